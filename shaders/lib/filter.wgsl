@@ -8,9 +8,9 @@ fn filtered_at(slot: u32, point: Point) -> vec3f {
     let layer = i32(parameters[slot].x) + (point.pixel.y & 3);
     let color = filtered_pixel(point.pixel, layer);
     if BACKGROUND != NOTHING {
-        return color;
+        return color * headroom();
     }
-    return color / max(filtered_pixel(point.pixel, layer + 4).x, 1e-6);
+    return color * headroom() / max(filtered_pixel(point.pixel, layer + 4).x, 1e-6);
 }
 
 fn filtered_pixel(pixel: vec2i, layer: i32) -> vec3f {

@@ -17,34 +17,96 @@ struct Light {
     reserved_2: u32,
     horizon: vec3f,
     scene_radius: f32,          // metres
+    // Of the point of the sky that the sample looks from, as the sun's.
+    to_sky: vec3f,
+    sky_scale: f32,
+    sky_depth_step: f32,
+    sky_levels: f32,
+    sky_weight: f32,            // the solid angle that it stands for, over pi and over the sample's share
+    sky_spread: f32,            // how far around it filters look, as a tangent
+    sky_from_relative: mat4x4f,
 }
 
 @group(1) @binding(4) var shadow_map: texture_depth_2d;
 @group(1) @binding(5) var shadow_sampler: sampler_comparison;
+@group(1) @binding(10) var sky_map: texture_depth_2d;
 
 // The least cosine of the angle between a normal and its face's that a push makes up for: more would be seen at the feet of walls.
 const LEAST_ALONG: f32 = 0.7;
 
 // A software adapter runs both sides of every branch, so what is known before is a constant of the pipeline.
 override SHADOWS: bool = false;
+override SKY_SHADOWS: bool = false;
 
-// Share of the sun that arrives, 0..1: four bilinear comparisons, pushed along the normal so that a surface does not shade itself;
-// farther where it is aslant, or the face is that is shaded by another normal than its own; the filter turns from sample to sample, which softens the border.
-//
-// The map has one level, or four, two by two, each wider than the one before; the first that holds a place has its smallest texels.
+// How a map of depth from a light is read; members as those of Light.
+struct LightMap {
+    from_relative: mat4x4f,
+    to_light: vec3f,
+    scale: f32,
+    depth_step: f32,
+    levels: f32,
+}
+
+// Share of the sun that arrives, 0..1.
 fn sun_share(relative: vec3f, normal: vec3f, face: vec3f) -> f32 {
     if !SHADOWS {
         return 1.0;
     }
-    let across = (light.sun_from_relative * vec4f(relative, 1.0)).xyz;
-    let push = (light.sun_from_relative * vec4f(normal, 0.0)).xyz;
-    let levels = u32(light.shadow_levels);
+    let map = LightMap(light.sun_from_relative, light.to_sun, light.shadow_scale, light.shadow_depth_step, light.shadow_levels);
+    return share_at(shadow_map, place_in(shadow_map, map, relative, normal, face));
+}
+
+// Light of the sky that arrives from the sample's point of it, as a multiple of what falls on a surface that faces it, of the whole sky: the
+// mean over all samples is the share of the sky that is seen, each part weighted by its cosine.
+var<private> sky_arriving: f32 = 1.0;
+
+// A bound of what a sample may be brighter than its picture: a few points of the sky give walls all their light.
+fn headroom() -> f32 {
+    return select(1.0, 4.0, SKY_SHADOWS);
+}
+
+// Finds it for a place.
+fn see_sky(relative: vec3f, normal: vec3f, face: vec3f) {
+    if !SKY_SHADOWS {
+        return;
+    }
+    let map = LightMap(light.sky_from_relative, light.to_sky, light.sky_scale, light.sky_depth_step, light.sky_levels);
+    let place = place_in(sky_map, map, relative, normal, face);
+    // What is shaded by another normal lies in no plane that is known.
+    if light.sky_spread > 0.0 && all(normal == face) {
+        sky_arriving = share_of_cone(sky_map, place, light.sky_spread) * light.sky_weight;
+    } else {
+        sky_arriving = share_at(sky_map, place) * light.sky_weight;
+    }
+}
+
+// Where a map shows a place.
+struct MapPlace {
+    at: vec2f,                  // in the map
+    low: vec2f,                 // the part of the map that its level has
+    high: vec2f,
+    depth: f32,                 // as the map stores it, pushed off the face
+    slope: vec2f,               // of the plane through it, depth per metre to the right and down
+    depth_step: f32,            // metres that one unit of depth spans
+    texel: f32,                 // of the level, metres
+    per_metre: f32,             // share of the map's side that a metre is
+    is_beside: bool,            // the map does not show it
+}
+
+// Pushed along the normal so that a surface does not shade itself; farther where it is aslant, or the face is that is shaded by another
+// normal than its own.
+//
+// The map has one level, or four, two by two, each wider than the one before; the first that holds a place has its smallest texels.
+fn place_in(depths: texture_depth_2d, map: LightMap, relative: vec3f, normal: vec3f, face: vec3f) -> MapPlace {
+    let across = (map.from_relative * vec4f(relative, 1.0)).xyz;
+    let push = (map.from_relative * vec4f(normal, 0.0)).xyz;
+    let levels = u32(map.levels);
     let shift = vec2f(vec2u(levels, levels >> 8u) & vec2u(0xffu)) * (1.0 / 64.0);
     let ratio = f32(levels >> 16u);
     let side = select(0.5, 1.0, ratio == 1.0);                          // of a level, of the map's
-    let texel = 1.0 / (f32(textureDimensions(shadow_map).x) * side);   // of a level's side
+    let texel = 1.0 / (f32(textureDimensions(depths).x) * side);   // of a level's side
     let wider = 1.0 / ratio;
-    var scale = light.shadow_scale;
+    var scale = map.scale;
     var level = 0u;
     for (var i = 0; i < 3; i++) {
         let aside = abs(across.xy * scale + (shift - 0.5));
@@ -53,30 +115,92 @@ fn sun_share(relative: vec3f, normal: vec3f, face: vec3f) -> f32 {
         level += select(0u, 1u, is_outside);
     }
     let metres = texel / scale;
-    let slant = 1.0 - max(min(dot(normal, light.to_sun), dot(face, light.to_sun)), 0.0);
+    let slant = 1.0 - max(min(dot(normal, map.to_light), dot(face, map.to_light)), 0.0);
     // What is pushed along another normal leaves the face by less.
     let aside = select(1.0 / clamp(dot(normal, face), LEAST_ALONG, 1.0), 1.0, all(normal == face));
     let start = across + push * (metres * aside * (0.6 + 1.8 * slant));
     let local = start.xy * scale + shift;
-    if any(local < vec2f(0.0)) || any(local > vec2f(1.0)) {
+    let low = vec2f(f32(level & 1u), f32(level >> 1u)) * side;
+    let towards = max(push.z * map.depth_step, LEAST_TOWARDS);
+    return MapPlace(low + local * side, low, low + side, start.z + 0.35 * metres / map.depth_step, push.xy * (-1.0 / (towards * map.depth_step)),
+                    map.depth_step, metres, scale * side, any(local < vec2f(0.0)) || any(local > vec2f(1.0)));
+}
+
+// The least cosine to a light at which a plane's slope is followed: what is more aslant has next to none of it.
+const LEAST_TOWARDS: f32 = 0.05;
+// The angle by which filters turn from sample to sample, and points of a spiral follow each other.
+const GOLDEN_ANGLE: f32 = 2.399963;
+
+// Share of a light that arrives, 0..1: four bilinear comparisons; the filter turns from sample to sample, which softens the border.
+fn share_at(depths: texture_depth_2d, place: MapPlace) -> f32 {
+    if place.is_beside {
         return 1.0;
     }
-    let at = (vec2f(f32(level & 1u), f32(level >> 1u)) + local) * side;
-    let depth = start.z + 0.35 * metres / light.shadow_depth_step;
-    let angle = 2.399963 * f32(view.sample_index);
-    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle)) * (1.3 * texel * side);
+    let angle = GOLDEN_ANGLE * f32(view.sample_index);
+    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle)) * (1.3 * place.texel * place.per_metre);
     var share = 0.0;
     for (var i = 0; i < 4; i++) {
         let offset = turn * vec2f(f32(i & 1) - 0.5, f32(i >> 1) - 0.5);
-        share += textureSampleCompareLevel(shadow_map, shadow_sampler, at + offset, depth);
+        share += textureSampleCompareLevel(depths, shadow_sampler, place.at + offset, place.depth);
     }
     return 0.25 * share;
+}
+
+const SEARCHED: i32 = 5;       // places where something in the way is looked for
+const NEAREST_M: f32 = 0.5;     // from how near
+const COMPARED: i32 = 4;
+
+// Share of the light that arrives from a cone around the light's direction, 0..1; `spread`: the tangent of half its angle. As far as something is in the
+// way on average, so wide is the filter (Fernando 2005); it follows the plane in which the place lies, which hides nothing from itself.
+fn share_of_cone(depths: texture_depth_2d, place: MapPlace, spread: f32) -> f32 {
+    if place.is_beside {
+        return 1.0;
+    }
+    let first = GOLDEN_ANGLE * f32(view.sample_index);
+    let size = vec2f(textureDimensions(depths));
+    var sum = 0.0;
+    var count = 0.0;
+    var straight = FAR_AWAY;
+    var distance = NEAREST_M;
+    for (var i = 0; i < SEARCHED; i++) {
+        // The first looks straight on.
+        let reach = select(spread * distance * 0.7, 0.0, i == 0);
+        let angle = first + GOLDEN_ANGLE * f32(i);
+        let aside = reach * vec2f(cos(angle), sin(angle));
+        let at = clamp(place.at + aside * place.per_metre, place.low, place.high);
+        let stored = textureLoad(depths, vec2i(min(at * size, size - 1.0)), 0);
+        let height = (stored - place.depth - dot(place.slope, aside)) * place.depth_step;
+        // In the cone, and not the plane itself.
+        if height > place.texel && height * spread >= reach {
+            sum += height;
+            count += 1.0;
+            if i == 0 {
+                straight = height;
+            }
+        }
+        distance *= select(4.0, 1.0, i == 0);
+    }
+    if count == 0.0 {
+        return share_at(depths, place);
+    }
+    let radius = max(spread * min(sum / count, straight), 0.65 * place.texel);
+    var share = 0.0;
+    for (var i = 0; i < COMPARED; i++) {
+        let angle = first + GOLDEN_ANGLE * f32(i);
+        let aside = radius * sqrt((f32(i) + 0.5) / f32(COMPARED)) * vec2f(cos(angle), sin(angle));
+        let at = clamp(place.at + aside * place.per_metre, place.low, place.high);
+        share += textureSampleCompareLevel(depths, shadow_sampler, at, place.depth + dot(place.slope, aside));
+    }
+    return share / f32(COMPARED);
 }
 
 // Light that falls on a surface (irradiance over pi), without its own colour.
 fn irradiance(normal: vec3f, sun: f32) -> vec3f {
     let up = 0.5 + 0.5 * normal.z;
-    let ambient = mix(light.ground, light.sky, up);
+    var ambient = mix(light.ground, light.sky, up);
+    if SKY_SHADOWS {
+        ambient = light.ground * (1.0 - up) + light.sky * (max(dot(normal, light.to_sky), 0.0) * sky_arriving);
+    }
     return ambient + light.sun * (max(dot(normal, light.to_sun), 0.0) * sun);
 }
 

@@ -1,6 +1,7 @@
 // A linear colour in 32 bits, as neighbourhood filters read and write it: square roots, of red and green to 11 bits
 // and of blue to 10. What rounding costs is below 0.09 of a step of the picture's bytes, in blue 0.18, each time. Channels
-// above 1 are cut, as the picture cuts them: a filter reads what is shown.
+// above 1 are cut, as the picture cuts them: a filter reads what is shown. Samples of a picture that are brighter than that are scaled
+// before (`headroom` in `lib/light.wgsl`), and rounding costs twice as much of each.
 
 const LEVELS = vec3f(2047.0, 2047.0, 1023.0);
 

@@ -109,6 +109,7 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u, share: vec3f) -> Po
     point.lit = CLAY || (surface.flags & SURFACE_UNLIT) == 0u;
     point.natural = surface.color;
     point.sun = sun_share(point.relative, point.normal, face);
+    see_sky(point.relative, point.normal, face);
     point.arriving = irradiance(point.normal, point.sun);
     point.shade = luminance(point.arriving);
     point.opacity = opacity_of(surface);

@@ -85,6 +85,15 @@ fn take(in: Corner) {
     light.zenith = in.zenith.xyz;
     light.horizon = in.horizon.xyz;
     light.scene_radius = in.sky.w;
+    if SKY_SHADOWS {
+        light.to_sky = light_uniform.to_sky;
+        light.sky_scale = light_uniform.sky_scale;
+        light.sky_depth_step = light_uniform.sky_depth_step;
+        light.sky_levels = light_uniform.sky_levels;
+        light.sky_weight = light_uniform.sky_weight;
+        light.sky_spread = light_uniform.sky_spread;
+        light.sky_from_relative = light_uniform.sky_from_relative;
+    }
     take_own(in);
 }
 
@@ -134,7 +143,7 @@ fn unfiltered(in: Corner) -> Unfiltered {
         if textureLoad(codes, pixel, 0).x != 0u {
             paint = paint_of_surface(pixel, middle, textureLoad(scene_depth, pixel, 0), in.part.x);
         }
-        four.color = vec4u(four.color.yzw, packed(paint.rgb * paint.a));
+        four.color = vec4u(four.color.yzw, packed(paint.rgb * (paint.a / headroom())));
         four.opacity = vec4u(four.opacity.yzw, packed(vec3f(paint.a)));
         // Here, not at the beginning: a software adapter goes through a whole round to find that there is none.
         if i == 3 {

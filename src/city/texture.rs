@@ -107,8 +107,7 @@ fn open(image: &TextureImage) -> Result<Opened, String> {
         reader.set_format(format);
     }
     let mut reader = reader.with_guessed_format().map_err(|e| format!("{name} cannot be read: {e}"))?;
-    if reader.format() == Some(ImageFormat::Gif) {
-        // A frame is made room for beside the picture that it is put into.
+    if is_copied(reader.format()) {
         limits.max_alloc = Some(most / 2);
         reader.limits(limits);
     }
@@ -134,17 +133,19 @@ fn begins_as_pointer(image: &TextureImage) -> bool {
     }
 }
 
-/// Memory that decoding an image of this size takes, bytes.
-fn needed([width, height]: [u32; 2], color: ColorType, is_gif: bool) -> u64 {
+/// Whether images of a format are decoded into room beside that of the picture: frames of GIFs, and all of a TIFF.
+fn is_copied(format: Option<ImageFormat>) -> bool {
+    matches!(format, Some(ImageFormat::Gif | ImageFormat::Tiff))
+}
+
+/// Memory that decoding an image of this size takes, bytes; `is_copied`: [`is_copied`].
+fn needed([width, height]: [u32; 2], color: ColorType, is_copied: bool) -> u64 {
     let pixels = u64::from(width) * u64::from(height);
     let (rgba, decoded) = (4 * pixels, u64::from(color.bytes_per_pixel()) * pixels);
-    // As it is in the file, and as RGBA8; then that with its levels. A GIF is put together of frames beside it.
-    let while_decoded = match (color, is_gif) {
-        (ColorType::Rgba8, false) => decoded,
-        (ColorType::Rgba8, true) => 2 * decoded,
-        _ => decoded + rgba,
-    };
-    while_decoded.max(rgba / 2 * 3)
+    // As it is in the file; then as RGBA8 beside that; then with its levels.
+    let read = if is_copied { 2 * decoded } else { decoded };
+    let turned = if color == ColorType::Rgba8 { 0 } else { decoded + rgba };
+    read.max(turned).max(rgba / 2 * 3)
 }
 
 /// Whether an image can be read, without reading all of it: its size, and that its end is there; where that is in doubt it is decoded.
@@ -184,10 +185,10 @@ fn last_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
 /// What decodes an image that is not too large.
 fn bounded(opened: Opened) -> Result<impl ImageDecoder, String> {
     let Opened { name, most, reader } = opened;
-    let is_gif = reader.format() == Some(ImageFormat::Gif);
+    let is_copied = is_copied(reader.format());
     let decoder = reader.into_decoder().map_err(|e: ImageError| format!("{name} cannot be decoded: {e}"))?;
     let (width, height) = decoder.dimensions();
-    let bytes = needed([width, height], decoder.color_type(), is_gif);
+    let bytes = needed([width, height], decoder.color_type(), is_copied);
     if bytes <= most {
         return Ok(decoder);
     }
@@ -581,14 +582,16 @@ mod tests {
 
     #[test]
     fn pixels_are_bounded_before_they_are_made() {
-        for (size, color, is_gif, mib) in [
+        for (size, color, is_copied, mib) in [
             ([8192, 8192], ColorType::Rgba8, false, 384),
             ([8192, 8192], ColorType::Rgb8, false, 448),
             ([8192, 8192], ColorType::Rgba16, false, 768),
             ([8192, 8192], ColorType::Rgba8, true, 512),
+            ([8192, 8192], ColorType::Rgb16, true, 768),
+            ([8192, 8192], ColorType::L8, true, 384),
             ([32_768, 32_768], ColorType::L8, false, 6144),
         ] {
-            assert_eq!(needed(size, color, is_gif), mib << 20, "{size:?} {color:?}");
+            assert_eq!(needed(size, color, is_copied), mib << 20, "{size:?} {color:?}");
         }
     }
 
@@ -609,5 +612,36 @@ mod tests {
         let refused = decode(&gif([48_111, 2495])).unwrap_err();
         assert!(refused.contains("imit"), "{refused}");
         assert!(decode(&gif([1, 1])).is_ok());
+    }
+
+    #[test]
+    fn a_tiff_whose_pixels_are_far_more_than_its_bytes_is_refused() {
+        let tiff = |width: u32, height: u32| {
+            // Bits of the four samples, four bytes of pixels, and the fields: tag, type (3: 16 bits, 4: 32), count, value.
+            let fields: [[u32; 4]; 9] = [
+                [256, 4, 1, width],
+                [257, 4, 1, height],
+                [258, 3, 4, 8],
+                [259, 3, 1, 1],
+                [262, 3, 1, 2],
+                [273, 4, 1, 16],
+                [277, 3, 1, 4],
+                [278, 4, 1, height],
+                [279, 4, 1, 4],
+            ];
+            let mut bytes = b"II*\0\x14\0\0\0\x08\0\x08\0\x08\0\x08\0abcd".to_vec();
+            bytes.extend((fields.len() as u16).to_le_bytes());
+            for [tag, kind, count, value] in fields {
+                bytes.extend([tag as u16, kind as u16].iter().flat_map(|word| word.to_le_bytes()));
+                bytes.extend([count, value].iter().flat_map(|word| word.to_le_bytes()));
+            }
+            bytes.extend([0; 4]);
+            let image = TextureImage::Bytes(Arc::from(bytes));
+            Texture { image, wrap: [Wrap::Repeat; 2], opacity: TextureOpacity::Own }
+        };
+        assert_eq!(decode(&tiff(1, 1)).map(|pixels| [pixels.width, pixels.height]), Ok([1, 1]));
+        // 272 MiB of RGBA, twice.
+        let refused = decode(&tiff(27_778, 2567)).unwrap_err();
+        assert!(refused.contains("544 MiB"), "{refused}");
     }
 }

@@ -31,23 +31,26 @@ pub struct Difference {
     pub against_f64: Option<Against>,
 }
 
-/// The difference of translucent layers from f64, over any background from black to white.
+/// The difference from what is right in f64: of translucent layers over any background from black to white, of light, of pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Against {
     /// The largest of all pixels and channels.
     pub max: f64,
     /// Over all of them.
     pub mean: f64,
+    /// The root of the mean of its square.
+    pub rms: f64,
 }
 
 impl Against {
-    /// The largest and the mean of the errors of pixels.
-    fn of(errors: impl Iterator<Item = [f64; 3]>) -> Self {
-        let (mut sum, mut max, mut count) = (0.0, 0.0_f64, 0_u64);
-        for error in errors.flatten() {
-            (sum, max, count) = (sum + error, max.max(error), count + 1);
+    /// That of what the channels of pixels are off.
+    pub fn of(errors: impl Iterator<Item = [f64; 3]>) -> Self {
+        let (mut sum, mut squares, mut max, mut count) = (0.0, 0.0, 0.0_f64, 0_u64);
+        for error in errors.flatten().map(f64::abs) {
+            (sum, squares, max, count) = (sum + error, squares + error * error, max.max(error), count + 1);
         }
-        Self { max, mean: sum / count.max(1) as f64 }
+        let count = count.max(1) as f64;
+        Self { max, mean: sum / count, rms: (squares / count).sqrt() }
     }
 
     /// The difference of what a method laid over its picture.

@@ -11,6 +11,7 @@
 
 pub mod difference;
 pub mod flip;
+pub mod light_by_rays;
 pub mod pareto;
 pub mod plot;
 pub mod quantity;

@@ -25,6 +25,8 @@ pub enum Quantity {
     MaxError,
     /// Mean of it.
     MeanError,
+    /// Root of the mean of its square.
+    RmsError,
     /// Time against the plain frame.
     Ratio,
     /// Time, milliseconds.
@@ -57,6 +59,7 @@ impl Quantity {
             Self::Flip => "mean FLIP (0: looks the same)".into(),
             Self::MaxError => "largest error against f64 (linear light)".into(),
             Self::MeanError => "mean error against f64 (linear light)".into(),
+            Self::RmsError => "root mean square error against f64 (linear light)".into(),
             Self::Ratio => "time (ratio to the plain frame)".into(),
             Self::Ms => "time (ms)".into(),
             Self::StartMs => "start-up (ms)".into(),
@@ -82,6 +85,7 @@ impl Quantity {
             Self::Flip => row.difference.flip,
             Self::MaxError => row.difference.against_f64.map_or(f64::NAN, |against| against.max),
             Self::MeanError => row.difference.against_f64.map_or(f64::NAN, |against| against.mean),
+            Self::RmsError => row.difference.against_f64.map_or(f64::NAN, |against| against.rms),
             Self::Ratio | Self::Ms | Self::StartMs => self.estimate(row).map_or(f64::NAN, |e| e.median),
             Self::Memory => row.gpu_bytes as f64 / f64::from(1 << 20),
             Self::Triangles => row.refined.map_or(f64::NAN, |refined| refined.triangles as f64),

@@ -68,6 +68,9 @@ pub fn markdown(measured: &Measurement, origin: &Origin) -> String {
     for (name, fact) in facts {
         let _ = writeln!(text, "- {name}: {fact}");
     }
+    for (name, slope) in slopes(measured) {
+        let _ = writeln!(text, "- Slope{name}: {slope}");
+    }
     text += "\n";
     let columns = columns(measured);
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
@@ -86,6 +89,9 @@ pub fn markdown(measured: &Measurement, origin: &Origin) -> String {
         false => "Memory is what the targets and lists of a frame take on the graphics card.".to_owned(),
     };
     let against = match measured.rows.iter().any(|row| row.difference.against_f64.is_some()) {
+        _ if topic.slope.is_some() => {
+            " Errors against f64 are of linear light; the picture's own steps are up to 0.009 of it."
+        }
         true => {
             " Errors against f64 are of what lies over the opaque picture, over any background from black to white, linear light."
         }
@@ -100,6 +106,36 @@ pub fn markdown(measured: &Measurement, origin: &Origin) -> String {
         measured.pairs,
     );
     text
+}
+
+/// With which power of a knob an error falls, for each line of the plot: least squares of the logarithms, of knobs above 1.
+fn slopes(measured: &Measurement) -> Vec<(String, String)> {
+    let topic = measured.topic;
+    let Some((knob, error)) = topic.slope else { return Vec::new() };
+    let mut lines: Vec<(String, Vec<[f64; 2]>)> = Vec::new();
+    for row in &measured.rows {
+        let names: Vec<String> =
+            topic.series.iter().filter_map(|i| row.knobs.get(*i)).map(|v| format!(", {v}")).collect();
+        let point = [Quantity::Knob(knob).of(row), error.of(row)].map(f64::ln);
+        if !point.iter().all(|v| v.is_finite()) || point[0] <= 0.0 {
+            continue;
+        }
+        match lines.iter_mut().find(|(name, _)| *name == names.concat()) {
+            Some((_, points)) => points.push(point),
+            None => lines.push((names.concat(), vec![point])),
+        }
+    }
+    let power = |points: &[[f64; 2]]| {
+        let n = points.len() as f64;
+        let [x, y] = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / n);
+        let both: f64 = points.iter().map(|p| (p[0] - x) * (p[1] - y)).sum();
+        both / points.iter().map(|p| (p[0] - x).powi(2)).sum::<f64>()
+    };
+    let text = |points: &[[f64; 2]]| {
+        let title = Quantity::Knob(knob).title(topic.knobs);
+        format!("the {} goes with {title} to the power of {:.2}", error.title(topic.knobs), power(points))
+    };
+    lines.into_iter().filter(|(_, points)| points.len() > 1).map(|(name, points)| (name, text(&points))).collect()
 }
 
 /// Heading, cell, whether it is text.
@@ -132,7 +168,9 @@ fn columns(measured: &Measurement) -> Vec<Column> {
     columns.push(figure("mean, steps", Quantity::MeanSteps));
     columns.push(figure("FLIP", Quantity::Flip));
     if measured.rows.iter().any(|row| row.difference.against_f64.is_some()) {
-        for (heading, quantity) in [("max, f64", Quantity::MaxError), ("mean, f64", Quantity::MeanError)] {
+        for (heading, quantity) in
+            [("max, f64", Quantity::MaxError), ("mean, f64", Quantity::MeanError), ("rms, f64", Quantity::RmsError)]
+        {
             columns.push((heading.to_owned(), Box::new(move |row: &Row| small(quantity.of(row))), false));
         }
     }

@@ -9,7 +9,7 @@ use crate::{
         pareto,
         ratio::{Estimate, in_turn, ratios},
         stage::Stage,
-        topic::{Shot, Topic, Trial, Value, Variant},
+        topic::{Exact, Shot, Topic, Trial, Value, Variant},
     },
     render::{
         parts::TILE,
@@ -233,11 +233,16 @@ fn compare(
         if let (Some(mask), Some(bits)) = (&variant.mask, &picture.lens_mask) {
             difference.wrong_mask_pixels = Some(difference::wrong_bits(mask, &bits[0]));
         }
-        if let Some(composited) = &variant.composited {
+        if let Some(exact) = &variant.exact {
             let Shot { scene, request, .. } = &variant.shot;
-            difference.against_f64 = Some(match scene.style.transparency {
-                Transparency::Stochastic => Against::pictures(&picture, &right),
-                _ => Against::transparency(&studio.transparency(scene, request.size)?, &composited.transparency),
+            difference.against_f64 = Some(match exact {
+                Exact::Light(light) => light.errors(&picture),
+                Exact::Layers(_) if scene.style.transparency == Transparency::Stochastic => {
+                    Against::pictures(&picture, &right)
+                }
+                Exact::Layers(layers) => {
+                    Against::transparency(&studio.transparency(scene, request.size)?, &layers.transparency)
+                }
             });
         }
         let figures = studio.renderer.deformed_figures();
@@ -352,6 +357,7 @@ mod tests {
             series: &[],
             panels: None,
             notes: None,
+            slope: None,
             restarts: true,
             make: |_| Err(RenderError::Scene(String::new())),
         };

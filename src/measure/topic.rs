@@ -5,7 +5,7 @@ use std::{fmt, sync::Arc};
 use serde::Serialize;
 
 use crate::{
-    measure::{quantity::Quantity, stage::Stage},
+    measure::{light_by_rays::LightByRays, quantity::Quantity, stage::Stage},
     render::{
         composited::Composited,
         picture::{RenderError, Request},
@@ -42,6 +42,8 @@ pub struct Topic {
     pub panels: Option<usize>,
     /// A knob whose values stand beside the points of lines.
     pub notes: Option<usize>,
+    /// A knob, and an error of which the table says which power of the knob it falls with, for each line of the plot.
+    pub slope: Option<(usize, Quantity)>,
     /// Whether every variant is started on a device of its own. Else nothing is known of its start-up, and its memory is what its
     /// targets and lists take.
     pub restarts: bool,
@@ -88,6 +90,15 @@ pub struct Shot {
     pub before: Option<Scene>,
 }
 
+/// What a picture should show, in f64.
+#[derive(Clone, Debug)]
+pub enum Exact {
+    /// Translucent layers, over any background.
+    Layers(Arc<Composited>),
+    /// Light on clay.
+    Light(Arc<LightByRays>),
+}
+
 /// One of the things that are compared.
 #[derive(Clone, Debug)]
 pub struct Variant {
@@ -99,8 +110,8 @@ pub struct Variant {
     pub shot: Shot,
     /// The picture that it is compared with; `None`: the trial's reference.
     pub reference: Option<Shot>,
-    /// The translucent layers in f64.
-    pub composited: Option<Arc<Composited>>,
+    /// What is right in f64.
+    pub exact: Option<Exact>,
     /// For a picture with one lens: whether each pixel is in it, where something better than the reference says so.
     pub mask: Option<Arc<Vec<bool>>>,
 }

@@ -1,5 +1,7 @@
 //! What the plan of a frame asks of the cities that are there: plain data.
 
+use glam::DVec3;
+
 use crate::{
     geom::Aabb,
     render::{
@@ -7,10 +9,8 @@ use crate::{
         city::{Chunk, Section, SectionKind, Texels, Translucency},
         frame::FrameInput,
         hiding::reaches_of,
-        light,
-        sun_eye::SunEye,
+        sun_eye::{MapSize, SunEye},
     },
-    scene::Sun,
     view::{Frustum, View},
 };
 
@@ -107,18 +107,14 @@ impl CityFacts<'_> {
         terrain.map(|chunk| u64::from(triangles_in(&chunk.range))).sum()
     }
 
-    /// The sun's eye where shadows are wanted, for a map of so many texels each way. `contents`: what contents show in a frustum, and in
-    /// all.
-    pub fn sun_eye(
+    /// The eye of a light from `direction`, for a map of such a size. `contents`: what contents show in a frustum, and in all.
+    pub fn light_eye(
         &self,
         view: &View,
-        sun: &Sun,
-        size: u32,
+        direction: DVec3,
+        size: &MapSize,
         contents: impl Fn(&Frustum) -> (Vec<Aabb>, Aabb),
     ) -> Option<SunEye> {
-        if !light::casts_shadows(sun) {
-            return None;
-        }
         let frustum = view.frustum(1.0);
         let chunks = self.chunks.iter().copied().flatten();
         let is_seen = |c: &&Chunk| c.details & Detail::Full.bit() != 0 && frustum.meets(&c.bounds);
@@ -126,7 +122,8 @@ impl CityFacts<'_> {
         let (of_contents, all) = contents(&frustum);
         seen.extend(of_contents);
         seen.extend(Some(self.moved).filter(|bounds| frustum.meets(bounds)));
-        SunEye::new(view, sun, &seen, &self.bounds.union(all).union(self.moved), size)
+        let casters = self.bounds.union(all).union(self.moved);
+        SunEye::new(view, direction, &seen, &casters, size)
     }
 
     /// Boxes around what contents show that a frustum meets, and one around all that they show, metres.

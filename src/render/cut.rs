@@ -25,7 +25,7 @@ pub(super) struct Cut {
     pub plan: Plan,
 }
 
-/// What is hidden from the main view and from the sun; `None` where no hiding lens is in view.
+/// What is hidden from the main view, and from sun and sky; `None` where no hiding lens is in view.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cuts {
     pub picture: Option<Cut>,
@@ -37,6 +37,17 @@ pub(super) struct Shapes {
     pub eye: layout::View,
     pub shapes: Vec<layout::Region>,
     pub planes: Vec<[f32; 4]>,
+}
+
+/// From where light falls that something may be hidden from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Lit<'a> {
+    /// No map is drawn.
+    Unshaded,
+    /// What this view of the sun shows.
+    From(&'a View),
+    /// All: sky is everywhere.
+    FromEverywhere,
 }
 
 impl Cuts {
@@ -93,17 +104,22 @@ impl Cuts {
         input: &FrameInput,
         is_seen: impl Fn(u32) -> bool,
         empty: &[u32],
-        sun: Option<&View>,
+        lit: Lit,
         picture: Option<Plan>,
     ) -> Self {
         let of = |hiding: Hiding, plan: Option<Plan>| plan.map(|plan| Cut { hiding, plan });
         let hiding =
             |is_active: &dyn Fn(u32) -> bool| Hiding::new(input.operations, input.volumes, &input.view, is_active);
-        let sun = sun.and_then(|sun| {
-            let frustum = sun.frustum(1.0);
+        let frustum = match lit {
+            Lit::Unshaded => None,
+            Lit::From(sun) => Some(Some(sun.frustum(1.0))),
+            Lit::FromEverywhere => Some(None),
+        };
+        let sun = frustum.and_then(|frustum| {
             let hiding = hiding(&|lens| {
                 let is_anywhere = |v: &LensVolume| v.everywhere || (v.has_own_eye() && v.asks_sides);
-                let is_met = |v: &LensVolume| is_anywhere(v) || frustum.meets(&v.bounds);
+                let meets = |v: &LensVolume| frustum.as_ref().is_none_or(|frustum| frustum.meets(&v.bounds));
+                let is_met = |v: &LensVolume| is_anywhere(v) || meets(v);
                 input.volumes.iter().any(|v| v.lens == lens && !v.keeps_shadows && is_met(v))
             });
             let own = input.volumes.iter().filter(|v| hiding.lenses.contains(&v.lens));

@@ -38,7 +38,7 @@ use crate::{
         frame::FrameInput,
         heights::{Height, Heights},
         layout::{self, CityVertex},
-        light::casts_shadows,
+        light::{casts_shadows, occludes_sky},
         moved::Moved,
         refinery::{LAYER_SHIFT, Made, Refinery, Rest, RestTriangles, TURNED},
         resource::pipelines::Pipelines,
@@ -276,7 +276,7 @@ impl Deforming {
 
 /// The cities that deformations may move in a frame, each once.
 fn worlds_of(contents: &Contents, input: &FrameInput) -> Vec<World> {
-    let has_shadows = casts_shadows(&input.sun);
+    let has_shadows = casts_shadows(&input.sun) || occludes_sky(&input.sun, input.samples);
     let may_show = |lens: u32| {
         let is_seen =
             |v: &LensVolume| v.seen_part(&input.view, input.tile).is_some() || has_shadows && !v.keeps_shadows;

@@ -231,6 +231,13 @@ pub struct Light {
     pub reserved_2: u32,
     pub horizon: [f32; 3],
     pub scene_radius: f32,
+    pub to_sky: [f32; 3],
+    pub sky_scale: f32,
+    pub sky_depth_step: f32,
+    pub sky_levels: f32,
+    pub sky_weight: f32,
+    pub sky_spread: f32,
+    pub sky_from_relative: [[f32; 4]; 4],
 }
 
 /// `pass/sprite.wgsl`.
@@ -558,7 +565,14 @@ mod tests {
                     zenith,
                     reserved_2,
                     horizon,
-                    scene_radius
+                    scene_radius,
+                    to_sky,
+                    sky_scale,
+                    sky_depth_step,
+                    sky_levels,
+                    sky_weight,
+                    sky_spread,
+                    sky_from_relative
                 }),
             ),
             (&Module::Sprite, host!(SpriteStage { region, pixels_per_texel, origin, clip_scale, clip_shift, leaves })),

@@ -7,6 +7,9 @@ use crate::city::{CityModel, NONE, ObjectClass, StringId, Surface};
 /// The clay of the plain ground.
 pub const PLAIN_GROUND: [u8; 3] = [203, 204, 192];
 
+/// The clay of `base = "clay"`, linear light: that of `lib/point.wgsl`.
+pub const CLAY: [f32; 3] = [0.62, 0.585, 0.54];
+
 const ROOF: [u8; 3] = [190, 122, 96];
 const FLAT_PART: [u8; 3] = [200, 188, 176];
 const WALL: [u8; 3] = [233, 226, 214];
@@ -90,6 +93,13 @@ mod tests {
             assert!((value(half(c)) - c).abs() <= c / 2048.0, "{c}");
         }
         assert_eq!(half(0.0), 0);
+    }
+
+    #[test]
+    fn clay_is_that_of_shaders() {
+        let [r, g, b] = CLAY;
+        let line = format!("const CLAY_COLOR = vec3f({r}, {g}, {b});");
+        assert!(include_str!("../../shaders/lib/point.wgsl").contains(&line), "{line}");
     }
 
     #[test]

@@ -308,7 +308,7 @@ impl Studio {
     ) -> Result<Picture, RenderError> {
         let started = Instant::now();
         let drawn = scene.drawn();
-        let resolved = self.resolve(&drawn, request.size)?;
+        let resolved = self.resolve(&drawn, request.size, request.samples)?;
         let mut picture = Picture::empty(request, drawn.scene.lenses.len());
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
@@ -377,7 +377,7 @@ impl Studio {
         mut timer: Option<&mut Timer>,
     ) -> Result<Vec<stats::Pass>, RenderError> {
         let drawn = scene.drawn();
-        let resolved = self.resolve(&drawn, request.size)?;
+        let resolved = self.resolve(&drawn, request.size, request.samples)?;
         let whole = PictureTile::whole(request.size);
         self.find_cities(&resolved)?;
         let mut input = FrameInput { furniture, most_triangles, ..input(&drawn.scene, request, &resolved, whole) };
@@ -442,7 +442,7 @@ impl Studio {
         part: ShaderPart,
     ) -> Result<String, RenderError> {
         let drawn = scene.drawn();
-        let resolved = self.resolve(&drawn, size)?;
+        let resolved = self.resolve(&drawn, size, 1)?;
         let request = Request { backend, ..Request::plain(size) };
         let input = input(&drawn.scene, &request, &resolved, whole(size));
         Ok(self.renderer.shader(&input, &drawn.scene.lenses, part))
@@ -464,10 +464,10 @@ impl Studio {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What a scene is in a picture of this size.
-    fn resolve(&self, drawn: &Drawn, size: [u32; 2]) -> Result<Resolved, RenderError> {
+    /// What a scene is in a picture of this size and so many samples.
+    fn resolve(&self, drawn: &Drawn, size: [u32; 2], samples: u32) -> Result<Resolved, RenderError> {
         let camera = self.camera(&drawn.scene, size);
-        Ok(self.surroundings().resolve(drawn, &camera, size, &mut self.known())?)
+        Ok(self.surroundings().resolve(drawn, &camera, size, samples, &mut self.known())?)
     }
 
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.

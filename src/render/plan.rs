@@ -1,20 +1,20 @@
 //! The plan of a frame: plain data, worked out once from what a frame is drawn from, the cities that are there and what stayed from
 //! before. All passes read it, and nothing works out again what it says.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use crate::{
     render::{
         bake::{self, BakeRequest},
         cells::Details,
         city_facts::{CityFacts, SectionFacts},
-        cut::Cuts,
+        cut::{Cuts, Lit},
         empty_lenses::{empty_lenses, idle_lenses},
         eye::view_uniform,
         frame::{Backend, FrameInput},
         layout,
         lens_numbers::LensNumbers,
-        light,
+        light::{self, LightSample},
         own_sprites::OwnSprites,
         picture_parts::PictureParts,
         plans::Plans,
@@ -22,7 +22,7 @@ use crate::{
         section_rounds,
         seen::{Seen, seen_volumes},
         settings::Settings,
-        sun_eye::SunEye,
+        sun_eye::{MapSize, SunEye},
     },
     scene::{BaseStyle, Technique},
     view::Frustum,
@@ -30,6 +30,10 @@ use crate::{
 
 /// The sine of the angle from the horizon from which on a view counts as straight up or down: a fortieth of a degree from it.
 const UPRIGHT: f64 = 1.0 - 1e-7;
+
+/// How wide texels of maps may be, pixels, in pictures of several samples: each draws the maps anew, and finer ones than the picture take time for nothing.
+/// With texels of three pixels, errors of what falls from the sky were twice as large.
+const SAMPLED_TEXEL_PX: f64 = 1.0;
 
 /// What a frame depends on of the adapter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -79,8 +83,11 @@ pub(super) struct FramePlan<'a> {
     /// The volumes of lenses that the picture may show, and their numbers.
     pub seen: Seen,
     pub numbers: LensNumbers,
-    /// The sun's eye, where there are shadows.
+    /// From where the sample's light comes.
+    pub light: LightSample,
+    /// The eye of the sun, where there are shadows, and that of the sky's point, where it is hidden from parts of the city.
     pub sun: Option<SunEye>,
+    pub sky: Option<SunEye>,
     /// What shaders do.
     pub plans: Plans,
     /// What is hidden.
@@ -121,10 +128,23 @@ impl<'a> FramePlan<'a> {
         let empty = empty_lenses(input, facts);
         let seen = seen_volumes(input, &facts.all, own_sprites.room(), &idle_lenses(&empty, input));
         let of_contents = |frustum: &Frustum| facts.content_bounds(input, frustum);
-        let sun = facts.sun_eye(&input.view, &input.sun, settings.shadow_size, of_contents);
+        let light = LightSample::new(&input.sun, input.sample, input.samples);
+        let map = |direction: DVec3, towards: DVec3, texel_px: f64| {
+            let size = MapSize { most: settings.shadow_size, texel_px, towards };
+            facts.light_eye(&input.view, direction, &size, of_contents)
+        };
+        let (middle, texel_px) = (light::to_sun(&input.sun), if input.is_summed() { SAMPLED_TEXEL_PX } else { 0.0 });
+        let sun = light::casts_shadows(&input.sun).then(|| map(light.to_sun, middle, texel_px)).flatten();
+        let sky = light.sky.and_then(|sky| map(sky.to, DVec3::Z, SAMPLED_TEXEL_PX));
+        let lit = match (&sun, &sky) {
+            // One program for all samples.
+            (_, Some(_)) => Lit::FromEverywhere,
+            (Some(sun), None) => Lit::From(sun.widest()),
+            (None, None) => Lit::Unshaded,
+        };
         let plans = Plans::new(input, &seen.volumes, &empty, facts.shows_clear_materials(&input.view));
         let is_seen = |lens| seen.volumes.iter().any(|v| v.lens == lens);
-        let cuts = Cuts::new(input, is_seen, &empty, sun.as_ref().map(SunEye::widest), plans.hiding.clone());
+        let cuts = Cuts::new(input, is_seen, &empty, lit, plans.hiding.clone());
         let sprite_bytes = 4 * seen.words;
         let counts = 1 + u64::from(own_sprites.room().counts) + seen.volumes.len() as u64;
         let count_bytes = if seen.lists > 0 || own_sprites.counts() { 4 * counts } else { 0 };
@@ -159,7 +179,9 @@ impl<'a> FramePlan<'a> {
             radius: light::radius_of(&facts.bounds),
             numbers: LensNumbers::new(input, &seen.volumes, &requests, own_sprites),
             parts: PictureParts::new(&seen.volumes, &plans.filters, input.tile.size),
+            light,
             sun,
+            sky,
             plans,
             cuts,
             has_sections,
@@ -204,7 +226,8 @@ impl<'a> FramePlan<'a> {
 
     /// The programs of the back end. `are_ready`: whether the pipelines of these programs are there, which the adaptive one asks.
     pub fn programs(&self, are_ready: impl FnOnce(&Programs) -> bool) -> Programs {
-        let made = Made { has_shadows: self.sun.is_some(), clear_materials: self.clear_materials };
+        let made =
+            Made { has_shadows: self.sun.is_some() || self.sky.is_some(), clear_materials: self.clear_materials };
         let specialised = || Programs::specialised(&self.plans, &self.cuts);
         let uber = || Programs::uber(self.input, &self.plans, &self.cuts, made);
         match self.input.backend {

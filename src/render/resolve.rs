@@ -14,7 +14,7 @@ use crate::{
         displayed::{LastDisplayed, Stands},
         footprints::{self, OwnFootprints},
         lens_volumes::{LensVolumes, Tools, volumes_of},
-        light::LEAST_SHADOW_SIZE,
+        light::{LEAST_SHADOW_SIZE, casts_shadows, occludes_sky, to_sun},
         moved::Moved,
         occlusion::Occlusion,
         operations::{AllTests, LensTables, MOST_FILTERS, Operations},
@@ -24,6 +24,7 @@ use crate::{
         regions,
         sights::sights,
         solids::SolidTable,
+        sun_eye::MapSize,
         volume::LensVolume,
     },
     scene::{Drawn, Scene},
@@ -90,12 +91,13 @@ impl Surroundings<'_> {
         self.facts.as_ref().map_or(Aabb::EMPTY, |facts| facts.bounds)
     }
 
-    /// What a scene is in a picture of this size, seen by `camera`.
+    /// What a scene is in a picture of this size and so many samples, seen by `camera`.
     pub fn resolve(
         &self,
         drawn: &Drawn,
         camera: &Camera,
         size: [u32; 2],
+        samples: u32,
         known: &mut Known,
     ) -> Result<Resolved, ResolveError> {
         let scene = &*drawn.scene;
@@ -109,7 +111,8 @@ impl Surroundings<'_> {
         regions::set_tests(technique, &mut found.volumes);
         known.solid_table = found.place_solids(&known.solid_table).map_err(ResolveError::Scene)?;
         let LensVolumes { mut volumes, tests } = found;
-        let contents = self.contents(drawn, &eye, camera, size, &volumes, known)?;
+        let view = View::new(*camera, size, &self.bounds())?;
+        let contents = self.contents(drawn, &eye, &view, samples, &volumes, known)?;
         contents.add_to_members(&mut volumes, self.city, &deformations.moved);
         let sights = self.sights(scene, &eye, &deformations.moved, known);
         let mut operations = self.operations(scene, &volumes, tests, &contents, sights)?;
@@ -175,13 +178,13 @@ impl Surroundings<'_> {
         }
     }
 
-    /// What lenses show in themselves, in a picture of this size.
+    /// What lenses show in themselves, in a picture of so many samples.
     fn contents(
         &self,
         drawn: &Drawn,
         eye: &Eye,
-        camera: &Camera,
-        size: [u32; 2],
+        view: &View,
+        samples: u32,
         volumes: &[LensVolume],
         known: &mut Known,
     ) -> Result<SceneContents, ResolveError> {
@@ -190,11 +193,15 @@ impl Surroundings<'_> {
             known.contents.clear();
             return Ok(SceneContents::default());
         }
-        let view = View::new(*camera, size, &self.bounds())?;
+        // What is out of the picture may hide the sky from what is in it.
+        let sees_sky = occludes_sky(&scene.sun, samples);
         // The coarsest map looks farthest beyond its edge.
-        let sun =
-            |facts: &CityFacts| facts.sun_eye(&view, &scene.sun, LEAST_SHADOW_SIZE, |_| (Vec::new(), Aabb::EMPTY));
-        let sun = self.facts.as_ref().and_then(sun);
+        let map = |facts: &CityFacts| {
+            let direction = to_sun(&scene.sun);
+            let size = MapSize { most: LEAST_SHADOW_SIZE, texel_px: 0.0, towards: direction };
+            facts.light_eye(view, direction, &size, |_| (Vec::new(), Aabb::EMPTY))
+        };
+        let sun = self.facts.as_ref().filter(|_| casts_shadows(&scene.sun)).and_then(map);
         let sun = sun.map(|sun| sun.widest().frustum(1.0));
         let stage = content_cities::Stage {
             drawn,
@@ -203,8 +210,8 @@ impl Surroundings<'_> {
             volumes,
             motion: &|lens| eye.motion(lens, scene, self.model),
             is_seen: &|volume| {
-                let is_in_sun = sun.as_ref().is_some_and(|frustum| frustum.meets(&volume.bounds));
-                is_in_sun || volume.seen_part(&view, whole(size)).is_some()
+                let is_in_sun = sees_sky || sun.as_ref().is_some_and(|frustum| frustum.meets(&volume.bounds));
+                is_in_sun || volume.seen_part(view, whole(view.size)).is_some()
             },
             reading: self.reading,
         };

@@ -141,10 +141,11 @@ impl Shared {
             stale |= self.tile_lists.sync(gpu, &lists)?;
         }
         let eye = input.view.camera.eye;
+        let maps = [plan.sun.as_ref(), plan.sky.as_ref()];
         stale |= self.view.sync(gpu, &[plan.view_uniform()])?;
         stale |= self
             .light
-            .sync(gpu, &[light::uniform(&input.sun, input.background, plan.sun.as_ref(), eye, plan.radius)])?;
+            .sync(gpu, &[light::uniform(&input.sun, &plan.light, input.background, maps, eye, plan.radius)])?;
         if self.solids_of.as_ref().is_none_or(|before| !Arc::ptr_eq(before, input.solids)) {
             stale |= self.solids.sync(gpu, &input.solids.words)?;
             self.solid_corners.sync(gpu, &input.solids.corners)?;
@@ -233,7 +234,7 @@ impl Shared {
         cities: &Cities<'a>,
         targets: &'a Targets,
         read: ShadedTargets<'a>,
-    ) -> [(u32, wgpu::BindingResource<'a>); 10] {
+    ) -> [(u32, wgpu::BindingResource<'a>); 11] {
         [
             (0, wgpu::BindingResource::TextureView(cities.surfaces())),
             (1, whole(self.planes.buffer())),
@@ -245,6 +246,7 @@ impl Shared {
             (7, wgpu::BindingResource::TextureView(read.depth)),
             (8, wgpu::BindingResource::TextureView(read.colors)),
             (9, wgpu::BindingResource::TextureView(read.emissions)),
+            (10, all_of(&targets.sky)),
         ]
     }
 }

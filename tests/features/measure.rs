@@ -14,6 +14,7 @@ use veduta::{
         self, TOPICS, Variant,
         difference::{Against, Difference},
         stage::Stage,
+        topic::Exact,
     },
     render::picture::Studio,
     scene::{CitySpec, Transparency},
@@ -239,10 +240,10 @@ fn transparency_is_measured_against_f64() {
     let trial = (topic.make)(&mut Stage { studio: &mut studio, size }).unwrap();
     let mut deepest = 0;
     for variant in trial.variants.iter().filter(|v| v.shot.request.samples == 1) {
-        let right = variant.composited.as_ref().unwrap();
+        let Some(Exact::Layers(right)) = &variant.exact else { panic!("{} has layers", variant.label) };
         deepest = deepest.max(right.most_layers);
         let found = studio.transparency(&variant.shot.scene, size).unwrap();
-        let Against { max, mean } = Against::transparency(&found, &right.transparency);
+        let Against { max, mean, .. } = Against::transparency(&found, &right.transparency);
         assert!(mean <= max && max <= 2.0, "{}: {mean} {max}", variant.label);
         let method = variant.shot.scene.style.transparency;
         match method {

@@ -227,7 +227,7 @@ fn what_a_flat_lens_hides_is_gone_beyond_its_plane() {
 
 #[test]
 fn what_a_flat_lens_hides_casts_no_shadow() {
-    let sun = Sun { azimuth: 225.0_f64.to_radians(), elevation: 20.0_f64.to_radians(), shadows: true };
+    let sun = Sun { azimuth: 225.0_f64.to_radians(), elevation: 20.0_f64.to_radians(), ..Sun::default() };
     let of = |camera: Camera, lenses: Vec<Lens>, shadows: bool| {
         let mut scene = Scene { camera: Some(camera), lenses, sun: Sun { shadows, ..sun }, ..Scene::default() };
         scene.city.files = vec![citydata("cube.city.json")];

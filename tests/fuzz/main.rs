@@ -3,7 +3,7 @@
 //!
 //! `cargo test` runs a short and always equal part. `./dev fuzz SECONDS` (`VEDUTA_FUZZ_SECONDS`) goes on with other
 //! numbers each time, as long with one kind as with another; `VEDUTA_FUZZ_SEED` repeats its numbers, `VEDUTA_FUZZ_KINDS` (words that are in the
-//! names of kinds) chooses some. An input that fails is left in `target/fuzz/`.
+//! names of kinds, or names) chooses some. An input that fails is left in `target/fuzz/`.
 
 mod kinds;
 mod mutate;
@@ -123,8 +123,12 @@ fn wrong_files_do_no_harm() {
     let wanted = std::env::var("VEDUTA_FUZZ_KINDS").unwrap_or_default();
     let folder = PathBuf::from(format!("target/fuzz/now-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("target/fuzz/ can be made");
-    let is_wanted = |kind: &Kind| wanted.is_empty() || wanted.split(',').any(|word| kind.name.contains(word));
-    let mut runs: Vec<Run> = kinds()
+    let all = kinds();
+    let names: Vec<&str> = all.iter().map(|kind| kind.name).collect();
+    // A word that is a name means that kind alone.
+    let means = |word: &str, name: &str| if names.contains(&word) { word == name } else { name.contains(word) };
+    let is_wanted = |kind: &Kind| wanted.is_empty() || wanted.split(',').any(|word| means(word, kind.name));
+    let mut runs: Vec<Run> = all
         .into_iter()
         .filter(is_wanted)
         .map(|kind| {

@@ -83,4 +83,28 @@ pub const SUN_ROWS: &[Row<Sun>] = &[
     ),
     field!(key("shadows", Kind::Boolean, "true", "", "Whether it casts shadows.", "false"), Same, |sun: Sun| sun
         .shadows),
+    field!(
+        key(
+            "size_deg",
+            Kind::Number { min: 0.0, max: 20.0 },
+            "0.53",
+            "degrees",
+            "Angular diameter of its disc: how soft shadows are in pictures of several samples; 0 is a point.",
+            "3.0",
+        ),
+        Degrees,
+        |sun: Sun| sun.size
+    ),
+    field!(
+        key(
+            "ambient_occlusion",
+            Kind::Boolean,
+            "true",
+            "",
+            "Whether the city hides parts of the sky from itself, where `shadows` are on; in pictures of several samples.",
+            "false",
+        ),
+        Same,
+        |sun: Sun| sun.ambient_occlusion
+    ),
 ];

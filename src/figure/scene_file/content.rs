@@ -190,12 +190,7 @@ const CONTENT_ROWS: &[Row<Content>] = &[
             "Turns it about that point: yaw counter-clockwise from above, pitch lifts its east, roll about its east.",
             "[90.0, 0.0, 0.0]",
         ),
-        |content, _| {
-            content
-                .copied
-                .filter(|copied| copied.rotation != DQuat::IDENTITY)
-                .and_then(|copied| Turn::data(&copied.rotation))
-        },
+        |content, _| content.copied.filter(is_turned).and_then(|copied| Turn::data(&copied.rotation)),
         |content, given| Turn::take(given.node, &mut copied(content).rotation),
     ),
     Row::<Content>::new(
@@ -225,9 +220,14 @@ fn copied(content: &mut Content) -> &mut Copied {
     content.copied.get_or_insert(Copied { from: None, to: None, rotation: DQuat::IDENTITY, scale: 1.0 })
 }
 
+/// Whether it is turned by as much as is written.
+fn is_turned(copied: &Copied) -> bool {
+    Turn::data(&copied.rotation) != Turn::data(&DQuat::IDENTITY)
+}
+
 /// Whether the scale is written: something says that a content is moved.
 fn says_scale(copied: &Copied) -> bool {
-    copied.scale != 1.0 || (copied.rotation == DQuat::IDENTITY && copied.from.is_none() && copied.to.is_none())
+    copied.scale != 1.0 || (!is_turned(copied) && copied.from.is_none() && copied.to.is_none())
 }
 
 /// The table of a content.
@@ -314,4 +314,28 @@ fn derived(own: &Fields, reader: &mut Reader) -> Option<Derive> {
         }
     };
     Some(Derive { form, parts: own.boolean("parts").unwrap_or(false) })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::figure::scene_file::{Options, parse, to_toml};
+
+    #[test]
+    fn a_turn_by_next_to_nothing_is_none() {
+        for keys in [
+            "rotation_deg = [0, 1e-200, 0]",
+            "rotation_deg = [0, 0, 1e-30], from = [0, 0, 0]",
+            "scale = 2, rotation_deg = [1e-300, 0, 0]",
+        ] {
+            let text = format!(
+                "veduta = 1\n[[lens]]\nkind = \"content\"\nshape = {{ kind = \"sphere\", center = [0, 0, 0], radius = 5 }}\ncontent = {{ {keys} }}\n"
+            );
+            let read = |text: &str| parse(text, "s", &Options::for_command_line()).unwrap();
+            let scene = read(&text);
+            let once = to_toml(&scene);
+            assert!(!once.contains("rotation_deg"), "{once}");
+            assert_eq!(to_toml(&read(&once)), once, "{keys}");
+            assert!(read(&once).lenses[0].content().is_some_and(|content| content.copied.is_some()), "{keys}");
+        }
+    }
 }

@@ -40,14 +40,16 @@ impl Options {
         if written.starts_with(crate::city::builtin::PREFIX) {
             return crate::city::builtin::check(written).map(|()| PathBuf::from(written)).map_err(PathProblem::Wrong);
         }
-        let path = if let Some(rest) = written.strip_prefix(DATA) {
+        let at_beginning = written.strip_prefix(DATA);
+        if at_beginning.unwrap_or(written).contains("${") {
+            return Err(PathProblem::Wrong(format!("only {DATA}, at the beginning, is replaced: \"{written}\"")));
+        }
+        let path = if let Some(rest) = at_beginning {
             let data = self.data.as_ref().ok_or(PathProblem::NoData)?;
             if !(rest.is_empty() || rest.starts_with('/')) {
                 return Err(PathProblem::Wrong(format!("after {DATA} must come a /: \"{written}\"")));
             }
             data.join(rest.trim_start_matches('/'))
-        } else if written.contains("${") {
-            return Err(PathProblem::Wrong(format!("only {DATA}, at the beginning, is replaced: \"{written}\"")));
         } else {
             self.base.join(written)
         };
@@ -121,6 +123,10 @@ mod tests {
         }
         let free = Options { allow_outside: true, ..options() };
         assert_eq!(free.resolve("/etc/passwd"), Ok("/etc/passwd".into()));
+        // What could not be written again is not read.
+        for written in ["${VEDUTA_DATA}/a${VEDUTA_DATA}/x", "${VEDUTA_DATA}/x${", "x${VEDUTA_DATA}"] {
+            assert!(matches!(free.resolve(written), Err(PathProblem::Wrong(_))), "{written}");
+        }
         let without = Options { data: None, ..options() };
         assert_eq!(without.resolve("${VEDUTA_DATA}/x"), Err(PathProblem::NoData));
     }

@@ -601,7 +601,7 @@ prop_compose! {
             overlays,
             layout: layout.unwrap_or_default(),
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
-            sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2 },
+            sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2, ..Sun::default() },
             style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency, chord_px },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).chain(moving).collect(),
             lenses,

@@ -39,6 +39,7 @@ pub const TOPIC: Topic = Topic {
     series: &[1, 2],
     panels: None,
     notes: None,
+    slope: None,
     restarts: true,
     make,
 };
@@ -95,7 +96,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                     shot,
                     reference: Some(specialised.clone()),
                     mask: None,
-                    composited: None,
+                    exact: None,
                 });
             }
         }

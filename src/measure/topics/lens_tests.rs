@@ -49,6 +49,7 @@ pub const TOPIC: Topic = Topic {
     series: &[1, 3, 4],
     panels: None,
     notes: None,
+    slope: None,
     restarts: true,
     make,
 };
@@ -147,7 +148,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot,
                 reference: Some(reference.clone()),
                 mask: None,
-                composited: None,
+                exact: None,
             });
         }
     }

@@ -3,6 +3,7 @@
 pub mod gpu;
 mod handlers;
 mod lens_tests;
+mod light;
 mod refinement;
 mod samples;
 mod sprites;
@@ -11,8 +12,15 @@ mod transparency;
 use crate::measure::topic::Topic;
 
 /// All topics, as they are listed.
-pub const TOPICS: &[Topic] =
-    &[handlers::TOPIC, lens_tests::TOPIC, refinement::TOPIC, samples::TOPIC, sprites::TOPIC, transparency::TOPIC];
+pub const TOPICS: &[Topic] = &[
+    handlers::TOPIC,
+    lens_tests::TOPIC,
+    light::TOPIC,
+    refinement::TOPIC,
+    samples::TOPIC,
+    sprites::TOPIC,
+    transparency::TOPIC,
+];
 
 #[cfg(test)]
 mod tests {

@@ -37,6 +37,7 @@ pub const TOPIC: Topic = Topic {
     series: &[0],
     panels: None,
     notes: Some(1),
+    slope: None,
     restarts: false,
     make,
 };
@@ -77,7 +78,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot,
                 reference: Some(stage.shot(of(&steps, 0.03125), 1)),
                 mask: None,
-                composited: None,
+                exact: None,
             });
         }
     }

@@ -24,6 +24,7 @@ pub const TOPIC: Topic = Topic {
     series: &[],
     panels: None,
     notes: None,
+    slope: None,
     restarts: true,
     make,
 };
@@ -37,7 +38,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
         shot: shot(samples),
         reference: None,
         mask: None,
-        composited: None,
+        exact: None,
     };
     Ok(Trial { plain: shot(1), reference: shot(64), variants: [1, 2, 4, 8, 16, 32].map(variant).into() })
 }

@@ -46,6 +46,7 @@ pub const TOPIC: Topic = Topic {
     series: &[0],
     panels: None,
     notes: None,
+    slope: None,
     restarts: true,
     make,
 };
@@ -95,7 +96,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot: stage.shot(scene.clone(), 1),
                 reference: Some(analytic.clone()),
                 mask: Some(mask.clone()),
-                composited: None,
+                exact: None,
             });
         }
     }

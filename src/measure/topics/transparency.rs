@@ -10,7 +10,7 @@ use crate::{
     measure::{
         quantity::Quantity,
         stage::{Stage, lens},
-        topic::{Knob, Topic, Trial, Value, Variant},
+        topic::{Exact, Knob, Topic, Trial, Value, Variant},
     },
     render::picture::RenderError,
     scene::{Scene, Transparency, transparency::SLOTS},
@@ -41,6 +41,7 @@ pub const TOPIC: Topic = Topic {
     series: &[1],
     panels: Some(0),
     notes: Some(2),
+    slope: None,
     restarts: false,
     make,
 };
@@ -115,7 +116,7 @@ fn make(stage: &mut Stage<'_>) -> Result<Trial, RenderError> {
                 shot: stage.shot(own, samples),
                 reference: Some(stage.shot(scene.clone(), samples)),
                 mask: None,
-                composited: Some(Arc::clone(&composited)),
+                exact: Some(Exact::Layers(Arc::clone(&composited))),
             });
         }
     }

@@ -58,8 +58,9 @@ pub struct CompositeKey {
     pub texels_emit: bool,
     /// One clay colour.
     pub clay: bool,
-    /// There is a shadow map.
+    /// There is a shadow map, and one of the sky.
     pub shadows: bool,
+    pub sky: bool,
     /// Normals are in the lists.
     pub smooth: bool,
     /// Which layer is the shown surface is written down.
@@ -85,6 +86,7 @@ impl CompositeKey {
             texels_emit: plan.texels_emit,
             clay: plan.is_clay(),
             shadows: plan.sun.is_some(),
+            sky: plan.sky.is_some(),
             smooth: plan.smooth,
             shown: plan.input.wants_shown_layers(),
             sorted: false,
@@ -109,6 +111,7 @@ impl PipelineKey for CompositeKey {
             (self.texels_emit, "of texels"),
             (self.clay, "clay"),
             (self.shadows, "shadows"),
+            (self.sky, "sky"),
             (self.smooth, "smooth"),
             (self.shown, "shown"),
         ];
@@ -131,6 +134,7 @@ impl PipelineKey for CompositeKey {
                 ("TEXELS_EMIT", flag(self.texels_emit)),
                 ("CLAY", flag(self.clay)),
                 ("SHADOWS", flag(self.shadows)),
+                ("SKY_SHADOWS", flag(self.sky)),
                 ("SMOOTH", flag(self.smooth)),
             ],
             stage: Stage::Draw(Draw {

@@ -4,6 +4,7 @@
 //! crossings of sprites    of rays with the solids of lenses that have layered sprites
 //! stored depth sprites    of the lens volumes in view that are tested by them, and those that have eyes of their own and are not there yet
 //! shadow map              if the sun casts shadows and the map does not hold this view yet
+//! sky map                 of several samples: what a point of the sky sees, in each another
 //! depth sprites           of the solids in view whose sides are asked for: nothing, then
 //! depth sprites, nearest  where rays enter first
 //! depth sprites, farthest and where they leave last
@@ -174,6 +175,7 @@ table! {
     // Before the city: what a lens hides is decided by them.
     stored: stored_sprites::StoredSprites,
     shadow: shadow::ShadowMap,
+    sky: shadow::SkyMap,
     sides: solid_sprites::SolidSprites,
     geometry: geometry::Geometry,
     region_geometry: reference::region_geometry::RegionGeometry,

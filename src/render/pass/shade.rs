@@ -75,8 +75,9 @@ pub struct ShadeKey {
     clay: bool,
     /// Where it goes.
     target: ShadeTarget,
-    /// There is a shadow map.
+    /// There is a shadow map, and one of the sky.
     shadows: bool,
+    sky: bool,
     /// Normals are in the target.
     smooth: bool,
     /// Something has light of its own.
@@ -99,6 +100,7 @@ impl ShadeKey {
             textured: plan.is_textured(),
             clay: plan.is_clay(),
             shadows: plan.sun.is_some(),
+            sky: plan.sky.is_some(),
             smooth: plan.smooth,
             emits: plan.emits,
             texels_emit: plan.texels_emit,
@@ -133,6 +135,7 @@ impl PipelineKey for ShadeKey {
             (self.target == ShadeTarget::Sums, "summed"),
             (self.target == ShadeTarget::Unfiltered, "unfiltered"),
             (self.shadows, "shadows"),
+            (self.sky, "sky"),
             (self.emits, "emission"),
             (self.texels_emit, "of texels"),
             (self.sections, "sections"),
@@ -161,6 +164,7 @@ impl PipelineKey for ShadeKey {
                 ("CLAY", flag(self.clay)),
                 ("SUMMED", flag(self.target == ShadeTarget::Sums)),
                 ("SHADOWS", flag(self.shadows)),
+                ("SKY_SHADOWS", flag(self.sky)),
                 ("SMOOTH", flag(self.smooth)),
                 ("EMITS", flag(self.emits)),
                 ("TEXELS_EMIT", flag(self.texels_emit)),

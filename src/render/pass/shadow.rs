@@ -1,4 +1,4 @@
-//! The shadow map: depth from the sun, drawn where the map does not hold this view yet.
+//! The maps of what sun and sky see: depth from them, drawn where a map does not hold this view yet.
 
 use wgpu::ShaderStages as S;
 
@@ -24,7 +24,7 @@ use crate::{
             layouts::{CITY, CUT_CITY, IMAGES, VIEW},
             recording::{Counted, DrawnPass, Recording, Shaded, cleared_depth},
             synced::Synced,
-            targets::Needs,
+            targets::{Needs, Target},
             vertices,
         },
         sun_eye::SunEye,
@@ -118,9 +118,14 @@ struct Held {
     map: wgpu::Texture,
 }
 
+/// Depth from the sun.
+pub type ShadowMap = LightMap<false>;
+/// Depth from a point of the sky.
+pub type SkyMap = LightMap<true>;
+
 /// What the pass keeps.
 #[derive(Debug)]
-pub struct ShadowMap {
+pub struct LightMap<const OF_SKY: bool> {
     /// What each level is seen with.
     views: Vec<(Synced, KeptGroup)>,
     cities: Synced,
@@ -136,7 +141,14 @@ pub struct ShadowMap {
     held: Option<Held>,
 }
 
-impl ShadowMap {
+impl<const OF_SKY: bool> LightMap<OF_SKY> {
+    const NAME: &'static str = if OF_SKY { "sky map" } else { "shadow map" };
+    const VIEW: &'static str = if OF_SKY { "sky" } else { "sun" };
+
+    fn target<'a>(frame: &FrameContext<'a>) -> &'a Target {
+        if OF_SKY { &frame.targets.sky } else { &frame.targets.shadow }
+    }
+
     /// Brings what hides something from the sun up to date; whether bind groups are stale.
     fn upload_cut(&mut self, stage: &Preparing, cut: &Cut) -> Result<bool, GpuError> {
         let Shapes { eye, shapes, planes } = cut.shapes(stage.plan.input, stage.plan.own_sprites);
@@ -225,11 +237,14 @@ impl ShadowMap {
     }
 }
 
-impl Pass for ShadowMap {
-    /// The sun's eye.
+impl<const OF_SKY: bool> Pass for LightMap<OF_SKY> {
+    /// The eye of the light.
     type Input<'a> = &'a SunEye;
 
-    const LIST: &'static [Line] = &[("shadow map", "if the sun casts shadows and the map does not hold this view yet")];
+    const LIST: &'static [Line] = match OF_SKY {
+        false => &[("shadow map", "if the sun casts shadows and the map does not hold this view yet")],
+        true => &[("sky map", "of several samples: what a point of the sky sees, in each another")],
+    };
 
     fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         use wgpu::BufferUsages as U;
@@ -250,11 +265,12 @@ impl Pass for ShadowMap {
     }
 
     fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<&'a SunEye> {
-        plan.sun.as_ref()
+        if OF_SKY { plan.sky.as_ref() } else { plan.sun.as_ref() }
     }
 
     fn add_needs(sun: &&SunEye, _: &FramePlan, needs: &mut Needs) {
-        needs.shadow = sun.size;
+        let side = if OF_SKY { &mut needs.sky } else { &mut needs.shadow };
+        *side = sun.size;
     }
 
     fn add_keys(&self, input: Option<&&SunEye>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
@@ -294,7 +310,7 @@ impl Pass for ShadowMap {
         recording: &mut Recording,
         _: &mut Board,
     ) -> Result<(), GpuError> {
-        let FrameContext { plan, programs, targets, shared, cities, .. } = *frame;
+        let FrameContext { plan, programs, shared, cities, .. } = *frame;
         let by = plan.cuts.sun.as_ref().zip(programs.sun.as_ref()).map(|(cut, program)| CutBy { cut, program });
         let numbers = |by: CutBy| (by.program.clone(), by.cut.all_numbers(plan.input, plan.own_sprites));
         let wanted = Held {
@@ -303,7 +319,7 @@ impl Pass for ShadowMap {
             cities: cities.uniforms(sun.widest().camera.eye, plan.input.operations),
             details: plan.details.clone(),
             world: shared.world,
-            map: targets.shadow.texture.clone(),
+            map: Self::target(frame).texture.clone(),
         };
         if self.held.as_ref() == Some(&wanted) {
             return Ok(());
@@ -311,12 +327,12 @@ impl Pass for ShadowMap {
         self.held = Some(wanted);
         self.fit_groups(frame);
         let pass = DrawnPass {
-            name: "shadow map",
-            view: "sun",
+            name: Self::NAME,
+            view: Self::VIEW,
             lenses: by.map_or(&[][..], |by| &by.cut.hiding.lenses),
             shaded: Shaded::Unmeasured,
             colors: &[],
-            depth: Some(cleared_depth(&targets.shadow.view, 0.0)),
+            depth: Some(cleared_depth(&Self::target(frame).view, 0.0)),
         };
         recording.draw(pass, |pass| {
             let mut counted = Counted::NONE;

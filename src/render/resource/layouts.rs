@@ -51,6 +51,7 @@ pub static SHADE: GroupLayout = GroupLayout {
         (7, S::FRAGMENT, DEPTHS),
         (8, S::FRAGMENT, FLOATS),
         (9, S::FRAGMENT, FLOATS),
+        (10, S::FRAGMENT, DEPTHS),
     ],
 };
 /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks, invokers, filtered

@@ -41,8 +41,10 @@ pub struct Needs {
     pub tails: bool,
     /// Which of them is the shown surface.
     pub shown_layers: bool,
-    /// Side of the shadow map, 0 for none.
+    /// Side of the map of what the sun sees, 0 for none.
     pub shadow: u32,
+    /// Side of that of what a point of the sky sees, 0 for none.
+    pub sky: u32,
 }
 
 impl Needs {
@@ -70,6 +72,7 @@ impl Needs {
             shown_layers: self.shown_layers || before.shown_layers,
             // Of one size at a time: its whole texture is the map.
             shadow: if self.shadow == 0 { before.shadow } else { self.shadow },
+            sky: if self.sky == 0 { before.sky } else { self.sky },
         }
     }
 }
@@ -139,6 +142,8 @@ pub struct Targets {
     pub shown_depth: Target,
     /// Depth from the sun (1×1 where not needed).
     pub shadow: Target,
+    /// Depth from a point of the sky (1×1 where not needed).
+    pub sky: Target,
 }
 
 impl Targets {
@@ -170,6 +175,7 @@ impl Targets {
             self.shown_code,
             self.shown_depth,
             self.shadow,
+            self.sky,
             self.sprite_depth,
         ]
     }
@@ -241,6 +247,7 @@ impl Targets {
             shown_code: make_any("shown layer", full(needs.shown_layers), SMOOTH_CODES, drawn, false),
             shown_depth: make_any("depth of the shown layer", full(needs.shown_layers), OWN_DEPTH, drawn, false),
             shadow: make_any("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn, false),
+            sky: make_any("sky map", [needs.sky, needs.sky, 1], DEPTH, drawn, false),
         }
     }
 }

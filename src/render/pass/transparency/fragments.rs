@@ -143,8 +143,9 @@ struct Shading {
     emits: bool,
     /// One clay colour.
     clay: bool,
-    /// There is a shadow map.
+    /// There is a shadow map, and one of the sky.
     shadows: bool,
+    sky: bool,
     /// Of the picture: the context's, or the lenses'.
     part: u32,
     /// Base colours have a target.
@@ -161,6 +162,7 @@ impl Shading {
             clay: plan.is_clay(),
             // Mesa 22.3 crashes where fragments of the city sample the shadow map.
             shadows: plan.sun.is_some() && !plan.adapter.is_software,
+            sky: plan.sky.is_some() && !plan.adapter.is_software,
             part: u32::from(plan.has_lenses()),
             colored: plan.colored,
             measured: plan.input.measured,
@@ -249,6 +251,7 @@ impl FragmentKey {
                 ("EMITS", flag(own.emits)),
                 ("CLAY", flag(own.clay)),
                 ("SHADOWS", flag(own.shadows)),
+                ("SKY_SHADOWS", flag(own.sky)),
                 ("PART", f64::from(own.part)),
             ]);
         }
