@@ -53,7 +53,7 @@ fn sun_share(relative: vec3f, normal: vec3f, face: vec3f) -> f32 {
         return 1.0;
     }
     let map = LightMap(light.sun_from_relative, light.to_sun, light.shadow_scale, light.shadow_depth_step, light.shadow_levels);
-    return share_at(shadow_map, place_in(shadow_map, map, relative, normal, face));
+    return map_share(shadow_map, place_in(shadow_map, map, relative, normal, face));
 }
 
 // Light of the sky that arrives from the sample's point of it, as a multiple of what falls on a surface that faces it, of the whole sky: the
@@ -76,7 +76,7 @@ fn see_sky(relative: vec3f, normal: vec3f, face: vec3f) {
     if light.sky_spread > 0.0 && all(normal == face) {
         sky_arriving = share_of_cone(sky_map, place, light.sky_spread) * light.sky_weight;
     } else {
-        sky_arriving = share_at(sky_map, place) * light.sky_weight;
+        sky_arriving = map_share(sky_map, place) * light.sky_weight;
     }
 }
 
@@ -132,7 +132,7 @@ const LEAST_TOWARDS: f32 = 0.05;
 const GOLDEN_ANGLE: f32 = 2.399963;
 
 // Share of a light that arrives, 0..1: four bilinear comparisons; the filter turns from sample to sample, which softens the border.
-fn share_at(depths: texture_depth_2d, place: MapPlace) -> f32 {
+fn map_share(depths: texture_depth_2d, place: MapPlace) -> f32 {
     if place.is_beside {
         return 1.0;
     }
@@ -181,7 +181,7 @@ fn share_of_cone(depths: texture_depth_2d, place: MapPlace, spread: f32) -> f32 
         distance *= select(4.0, 1.0, i == 0);
     }
     if count == 0.0 {
-        return share_at(depths, place);
+        return map_share(depths, place);
     }
     let radius = max(spread * min(sum / count, straight), 0.65 * place.texel);
     var share = 0.0;
