@@ -185,6 +185,22 @@ impl Desk {
         self.does(&["mouseup", "1"])
     }
 
+    /// Asks the program to quit until it hears it, and waits until it has ended as it should: a window that is not there yet hears no key.
+    fn quits(&mut self) -> Result<(), Failed> {
+        for _ in 0..TRIES {
+            self.does(&["windowfocus", &self.window])?;
+            self.does(&["key", "ctrl+q"])?;
+            let started = Instant::now();
+            while started.elapsed() < UNHEARD * self.beat {
+                if self.app.0.try_wait()?.is_some() {
+                    return self.ends();
+                }
+                sleep(Duration::from_millis(50));
+            }
+        }
+        self.ends()
+    }
+
     /// Waits until the program has ended as it should.
     fn ends(&mut self) -> Result<(), Failed> {
         let started = Instant::now();
@@ -305,8 +321,7 @@ fn figure() -> Result<(), Failed> {
     if remembered.lines().next() != at("moved.toml").to_str() {
         return Err(format!("remembered is {remembered}").into());
     }
-    desk.does(&["key", "ctrl+q"])?;
-    desk.ends()
+    desk.quits()
 }
 
 /// A folder of a test with a scene, `mine.toml`, of the built-in city, and where edits are kept.
@@ -365,8 +380,7 @@ fn killed() -> Result<(), Failed> {
     if !scene(&folder)?.contains("[[lens]]") {
         return Err(format!("the lens did not come back: {}", scene(&folder)?).into());
     }
-    desk.does(&["key", "ctrl+q"])?;
-    desk.ends()?;
+    desk.quits()?;
     match &files_in(&unsaved)[..] {
         [] => Ok(()),
         left => Err(format!("left behind: {left:?}").into()),
@@ -410,9 +424,7 @@ fn closed_while_loading() -> Result<(), Failed> {
     let mut desk = Desk::open(&folder.0, &["endless.city.json"])?;
     desk.until_title("Untitled — Veduta")?;
     sleep(desk.beat);
-    desk.does(&["windowfocus", &desk.window.clone()])?;
-    desk.does(&["key", "ctrl+q"])?;
-    desk.ends()
+    desk.quits()
 }
 
 /// An object and an attribute of another city: one is a lens that holds nothing, the other no picture at all.
@@ -439,8 +451,7 @@ fn not_there() -> Result<(), Failed> {
             }
             sleep(desk.beat);
         }
-        desk.does(&["key", "ctrl+q"])?;
-        desk.ends()?;
+        desk.quits()?;
     }
     Ok(())
 }
