@@ -155,11 +155,11 @@ fn what_a_lens_hides_leaves_the_sky_open() {
     for backend in [Backend::Specialised, Backend::Uber] {
         let scene = lit(camera, vec![hidden.clone()]);
         let open = errors(&scene, &drawn(&mut studio, &scene, 16, backend), &without);
-        assert!(open.1 < 0.03, "{backend:?}: {open:?}");
+        assert!(open.1 < 0.014, "{backend:?}: {open:?}");
         let scene = lit(camera, vec![kept.clone()]);
         let picture = drawn(&mut studio, &scene, 16, backend);
         let [still, gone] = [&BOXES[..], &without].map(|boxes| errors(&scene, &picture, boxes));
-        assert!(still.1 < 0.03 && gone.1 > 2.0 * still.1, "{backend:?}: {still:?}, {gone:?}");
+        assert!(still.1 < 0.014 && gone.1 > 2.0 * still.1, "{backend:?}: {still:?}, {gone:?}");
     }
 }
 
@@ -170,12 +170,15 @@ fn filters_and_layers_see_whole_samples() {
     let camera = cameras()[0];
     let all = around([-90.0, -90.0, -5.0], [90.0, 90.0, 60.0]);
     let mut blurred = lens("blurred", [all.clone()], "blur");
-    blurred.effects[0].parameters = BTreeMap::from([("radius".into(), Parameter::Number(0.0))]);
+    blurred.effects[0].parameters = BTreeMap::from([("radius".into(), Parameter::Number(0.5))]);
     let mut glass = lens("glass", [all], "transparent");
     glass.effects[0].parameters = BTreeMap::from([("opacity".into(), Parameter::Number(1.0))]);
     // What is seen through casts no shadows of its own.
     glass.keeps_shadows = true;
-    for mut scene in [lit(camera, vec![]), Scene { style: Style::default(), ..lit(camera, vec![]) }] {
+    // A sun in the walls' faces, and the colours of the file, which are lighter than clay.
+    let mut white = Scene { style: Style::default(), ..lit(camera, vec![]) };
+    white.sun.elevation = 0.3;
+    for mut scene in [lit(camera, vec![]), white] {
         for transparency in [Transparency::Exact, Transparency::of("k-buffer", None).unwrap().expect("a method")] {
             scene.style.transparency = transparency;
             let plain = drawn(&mut studio, &scene, 16, Backend::default());
