@@ -53,7 +53,7 @@ fn sun_share(relative: vec3f, normal: vec3f, face: vec3f) -> f32 {
         return 1.0;
     }
     let map = LightMap(light.sun_from_relative, light.to_sun, light.shadow_scale, light.shadow_depth_step, light.shadow_levels);
-    return map_share(shadow_map, place_in(shadow_map, map, relative, normal, face));
+    return share_in(shadow_map, place_in(shadow_map, map, relative, normal, face));
 }
 
 // Light of the sky that arrives from the sample's point of it, as a multiple of what falls on a surface that faces it, of the whole sky: the
@@ -72,12 +72,18 @@ fn see_sky(relative: vec3f, normal: vec3f, face: vec3f) {
     }
     let map = LightMap(light.sky_from_relative, light.to_sky, light.sky_scale, light.sky_depth_step, light.sky_levels);
     let place = place_in(sky_map, map, relative, normal, face);
+    var distance = 0.0;
     // What is shaded by another normal lies in no plane that is known.
-    if light.sky_spread > 0.0 && all(normal == face) {
-        sky_arriving = share_of_cone(sky_map, place, light.sky_spread) * light.sky_weight;
-    } else {
-        sky_arriving = map_share(sky_map, place) * light.sky_weight;
+    if all(normal == face) {
+        distance = distance_in_cone(sky_map, place, light.sky_spread);
     }
+    var share = 1.0;
+    if distance > 0.0 {
+        share = share_in_disc(sky_map, place, max(light.sky_spread * distance, 0.5 * FILTER_TEXELS * place.texel));
+    } else {
+        share = share_in(sky_map, place);
+    }
+    sky_arriving = share * light.sky_weight;
 }
 
 // Where a map shows a place.
@@ -130,14 +136,19 @@ fn place_in(depths: texture_depth_2d, map: LightMap, relative: vec3f, normal: ve
 const LEAST_TOWARDS: f32 = 0.05;
 // The angle by which filters turn from sample to sample, and points of a spiral follow each other.
 const GOLDEN_ANGLE: f32 = 2.399963;
+const GOLDEN_TURN = mat2x2f(-0.7373688, 0.6754904, -0.6754904, -0.7373688);
 
-// Share of a light that arrives, 0..1: four bilinear comparisons; the filter turns from sample to sample, which softens the border.
-fn map_share(depths: texture_depth_2d, place: MapPlace) -> f32 {
+// How wide filters are, texels.
+const FILTER_TEXELS: f32 = 1.3;
+
+// Share of a light that arrives, 0..1: four bilinear comparisons, in the corners of a square around the place that turns from sample to sample, which
+// softens borders.
+fn share_in(depths: texture_depth_2d, place: MapPlace) -> f32 {
     if place.is_beside {
         return 1.0;
     }
     let angle = GOLDEN_ANGLE * f32(view.sample_index);
-    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle)) * (1.3 * place.texel * place.per_metre);
+    let turn = mat2x2f(cos(angle), sin(angle), -sin(angle), cos(angle)) * (FILTER_TEXELS * place.texel * place.per_metre);
     var share = 0.0;
     for (var i = 0; i < 4; i++) {
         let offset = turn * vec2f(f32(i & 1) - 0.5, f32(i >> 1) - 0.5);
@@ -146,52 +157,57 @@ fn map_share(depths: texture_depth_2d, place: MapPlace) -> f32 {
     return 0.25 * share;
 }
 
-const SEARCHED: i32 = 5;       // places where something in the way is looked for
-const NEAREST_M: f32 = 0.5;     // from how near
-const COMPARED: i32 = 4;
+const COMPARED: i32 = 8;
 
-// Share of the light that arrives from a cone around the light's direction, 0..1; `spread`: the tangent of half its angle. As far as something is in the
-// way on average, so wide is the filter (Fernando 2005); it follows the plane in which the place lies, which hides nothing from itself.
-fn share_of_cone(depths: texture_depth_2d, place: MapPlace, spread: f32) -> f32 {
+// The same on a disc of so many metres around the place, on the plane through it, along a spiral.
+fn share_in_disc(depths: texture_depth_2d, place: MapPlace, radius: f32) -> f32 {
     if place.is_beside {
         return 1.0;
     }
-    let first = GOLDEN_ANGLE * f32(view.sample_index);
+    let angle = GOLDEN_ANGLE * f32(view.sample_index);
+    var way = vec2f(cos(angle), sin(angle));
+    var share = 0.0;
+    for (var i = 0; i < COMPARED; i++) {
+        let aside = way * (radius * sqrt((f32(i) + 0.5) / f32(COMPARED)));
+        let at = clamp(place.at + aside * place.per_metre, place.low, place.high);
+        share += textureSampleCompareLevel(depths, shadow_sampler, at, place.depth + dot(place.slope, aside));
+        way = GOLDEN_TURN * way;
+    }
+    return share / f32(COMPARED);
+}
+
+const SEARCHED: i32 = 13;       // places where something in the way is looked for
+const NEAREST_M: f32 = 0.5;     // from how near
+const FARTHER: f32 = 1.6;       // and how much farther each time: to 100 m
+
+// How far something in the way is, metres, in a cone around the light's direction: straight on, or else on average; 0 where nothing is found. As far as that
+// is, so wide is the filter (Fernando 2005); it follows the plane in which the place lies, which hides nothing from itself. `spread`: the tangent of half
+// the cone's angle.
+fn distance_in_cone(depths: texture_depth_2d, place: MapPlace, spread: f32) -> f32 {
+    let angle = GOLDEN_ANGLE * f32(view.sample_index);
     let size = vec2f(textureDimensions(depths));
+    var way = vec2f(cos(angle), sin(angle));
+    // The first looks straight on.
+    var reach = 0.0;
+    var next = 0.7 * NEAREST_M * spread;
     var sum = 0.0;
     var count = 0.0;
     var straight = FAR_AWAY;
-    var distance = NEAREST_M;
     for (var i = 0; i < SEARCHED; i++) {
-        // The first looks straight on.
-        let reach = select(spread * distance * 0.7, 0.0, i == 0);
-        let angle = first + GOLDEN_ANGLE * f32(i);
-        let aside = reach * vec2f(cos(angle), sin(angle));
+        let aside = reach * way;
         let at = clamp(place.at + aside * place.per_metre, place.low, place.high);
         let stored = textureLoad(depths, vec2i(min(at * size, size - 1.0)), 0);
         let height = (stored - place.depth - dot(place.slope, aside)) * place.depth_step;
         // In the cone, and not the plane itself.
-        if height > place.texel && height * spread >= reach {
-            sum += height;
-            count += 1.0;
-            if i == 0 {
-                straight = height;
-            }
-        }
-        distance *= select(4.0, 1.0, i == 0);
+        let is_found = height > place.texel && height * spread >= reach;
+        sum += select(0.0, height, is_found);
+        count += select(0.0, 1.0, is_found);
+        straight = select(straight, height, is_found && i == 0);
+        way = GOLDEN_TURN * way;
+        reach = next;
+        next *= FARTHER;
     }
-    if count == 0.0 {
-        return map_share(depths, place);
-    }
-    let radius = max(spread * min(sum / count, straight), 0.65 * place.texel);
-    var share = 0.0;
-    for (var i = 0; i < COMPARED; i++) {
-        let angle = first + GOLDEN_ANGLE * f32(i);
-        let aside = radius * sqrt((f32(i) + 0.5) / f32(COMPARED)) * vec2f(cos(angle), sin(angle));
-        let at = clamp(place.at + aside * place.per_metre, place.low, place.high);
-        share += textureSampleCompareLevel(depths, shadow_sampler, at, place.depth + dot(place.slope, aside));
-    }
-    return share / f32(COMPARED);
+    return min(sum / max(count, 1.0), straight);
 }
 
 // Light that falls on a surface (irradiance over pi), without its own colour.

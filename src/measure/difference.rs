@@ -60,12 +60,16 @@ impl Against {
 
     /// The difference of pictures, where a method lays nothing over: colours in 8 bits, whose steps are at most 0.009 of linear light.
     pub fn pictures(found: &Picture, right: &Picture) -> Self {
-        let linear = |[r, g, b, _]: [u8; 4]| linear_from_srgb([r, g, b].map(|c| f32::from(c) / 255.0)).map(f64::from);
         Self::of(found.rgba.iter().zip(&right.rgba).map(|(found, right)| {
-            let (found, right) = (linear(*found), linear(*right));
+            let (found, right) = (linear_light(*found), linear_light(*right));
             [0, 1, 2].map(|i| (found[i] - right[i]).abs())
         }))
     }
+}
+
+/// A pixel in linear light, 0..1.
+pub fn linear_light([r, g, b, _]: [u8; 4]) -> [f64; 3] {
+    linear_from_srgb([r, g, b].map(|c| f32::from(c) / 255.0)).map(f64::from)
 }
 
 impl Difference {

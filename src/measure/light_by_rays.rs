@@ -7,8 +7,7 @@ use rayon::prelude::*;
 
 use crate::{
     geom::{Aabb, Ray},
-    lens::color::linear_from_srgb,
-    measure::difference::Against,
+    measure::difference::{Against, linear_light},
     render::{
         light::{self, LightSample, to_sun},
         palette::CLAY,
@@ -95,9 +94,8 @@ impl LightByRays {
 
     /// The errors of a picture, which has 8 bits a channel: steps of at most 0.009 of linear light.
     pub fn errors(&self, picture: &Picture) -> Against {
-        let linear = |[r, g, b, _]: [u8; 4]| linear_from_srgb([r, g, b].map(|c| f32::from(c) / 255.0)).map(f64::from);
         Against::of(self.pixels.iter().map(|(i, right)| {
-            let found = linear(picture.rgba[*i]);
+            let found = linear_light(picture.rgba[*i]);
             [0, 1, 2].map(|c| found[c] - right[c])
         }))
     }

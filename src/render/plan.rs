@@ -31,9 +31,10 @@ use crate::{
 /// The sine of the angle from the horizon from which on a view counts as straight up or down: a fortieth of a degree from it.
 const UPRIGHT: f64 = 1.0 - 1e-7;
 
-/// How wide texels of maps may be, pixels, in pictures of several samples: each draws the maps anew, and finer ones than the picture take time for nothing.
-/// With texels of three pixels, errors of what falls from the sky were twice as large.
-const SAMPLED_TEXEL_PX: f64 = 1.0;
+/// How wide texels of maps may be, pixels, in pictures of several samples: each draws the maps anew, and finer ones take time for nothing.
+/// What many points of the sky see is blurred anyway: two pixels add nothing to its error, three do.
+const SUN_TEXEL_PX: f64 = 1.0;
+const SKY_TEXEL_PX: f64 = 2.0;
 
 /// What a frame depends on of the adapter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -133,9 +134,9 @@ impl<'a> FramePlan<'a> {
             let size = MapSize { most: settings.shadow_size, texel_px, towards };
             facts.light_eye(&input.view, direction, &size, of_contents)
         };
-        let (middle, texel_px) = (light::to_sun(&input.sun), if input.is_summed() { SAMPLED_TEXEL_PX } else { 0.0 });
+        let (middle, texel_px) = (light::to_sun(&input.sun), if input.is_summed() { SUN_TEXEL_PX } else { 0.0 });
         let sun = light::casts_shadows(&input.sun).then(|| map(light.to_sun, middle, texel_px)).flatten();
-        let sky = light.sky.and_then(|sky| map(sky.to, DVec3::Z, SAMPLED_TEXEL_PX));
+        let sky = light.sky.and_then(|sky| map(sky.to, DVec3::Z, SKY_TEXEL_PX));
         let lit = match (&sun, &sky) {
             // One program for all samples.
             (_, Some(_)) => Lit::FromEverywhere,

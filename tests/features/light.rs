@@ -14,10 +14,10 @@ use veduta::{
 
 const SIZE: [u32; 2] = [240, 160];
 /// Linear light at noon: of the sun, of the sky, and what the ground throws back; and the colour of clay.
-const SUN: [f64; 3] = [0.86, 0.86 * 0.95, 0.86 * 0.86];
-const SKY: [f64; 3] = [0.335, 0.375, 0.43];
-const GROUND: [f64; 3] = [0.20, 0.185, 0.165];
-const CLAY: [f64; 3] = [0.62, 0.585, 0.54];
+pub const SUN: [f64; 3] = [0.86, 0.86 * 0.95, 0.86 * 0.86];
+pub const SKY: [f64; 3] = [0.335, 0.375, 0.43];
+pub const GROUND: [f64; 3] = [0.20, 0.185, 0.165];
+pub const CLAY: [f64; 3] = [0.62, 0.585, 0.54];
 /// sRGB of the sky at the horizon and above.
 const HORIZON: [f64; 3] = [0.90, 0.925, 0.94];
 const ZENITH: [f64; 3] = [0.57, 0.70, 0.84];
@@ -52,7 +52,7 @@ fn drawn(studio: &mut Studio, scene: &Scene) -> Picture {
     studio.render(scene, &request).expect("a picture")
 }
 
-fn to_sun(scene: &Scene) -> DVec3 {
+pub fn to_sun(scene: &Scene) -> DVec3 {
     let (azimuth, elevation) = (scene.sun.azimuth, scene.sun.elevation);
     DVec3::new(azimuth.sin() * elevation.cos(), azimuth.cos() * elevation.cos(), elevation.sin())
 }
@@ -62,7 +62,7 @@ fn encoded(linear: [f64; 3]) -> [f64; 3] {
     linear.map(|c| 255.0 * if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.min(1.0).powf(1.0 / 2.4) - 0.055 })
 }
 
-fn decoded(srgb: [f64; 3]) -> [f64; 3] {
+pub fn decoded(srgb: [f64; 3]) -> [f64; 3] {
     srgb.map(|c| if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) })
 }
 

@@ -3,11 +3,14 @@
 
 use std::{collections::BTreeMap, f64::consts::TAU};
 
-use crate::studio::*;
+use crate::{
+    light::{CLAY, GROUND, SKY, SUN, decoded, to_sun},
+    studio::*,
+};
 use glam::DVec3;
 use veduta::{
     geom::Shape,
-    lens::{Lens, Parameter},
+    lens::{EffectUse, Lens, Parameter},
     render::{
         frame::Backend,
         picture::{Aovs, Picture, Request, Studio},
@@ -17,10 +20,6 @@ use veduta::{
 };
 
 const SIZE: [u32; 2] = [160, 110];
-const SUN: [f64; 3] = [0.86, 0.86 * 0.95, 0.86 * 0.86];
-const SKY: [f64; 3] = [0.335, 0.375, 0.43];
-const GROUND: [f64; 3] = [0.20, 0.185, 0.165];
-const CLAY: [f64; 3] = [0.62, 0.585, 0.54];
 
 /// Corners of the boxes: a plate with its top at 0, a tower, and a wall across a narrow street from it.
 const BOXES: [([i64; 3], [i64; 3]); 3] =
@@ -46,8 +45,7 @@ fn drawn(studio: &mut Studio, scene: &Scene, samples: u32, backend: Backend) -> 
 }
 
 fn linear(rgba: [u8; 4]) -> [f64; 3] {
-    let decoded = |c: f64| if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) };
-    [0, 1, 2].map(|k| decoded(f64::from(rgba[k]) / 255.0))
+    decoded([0, 1, 2].map(|k| f64::from(rgba[k]) / 255.0))
 }
 
 /// Whether one of the boxes is in the way.
@@ -71,8 +69,7 @@ fn mean(side: u32, value: impl Fn(f64, f64) -> f64) -> f64 {
 /// What a face of clay looks like at a place.
 fn exact(scene: &Scene, place: DVec3, normal: DVec3, boxes: &[([i64; 3], [i64; 3])]) -> [f64; 3] {
     let from = place + 1e-3 * normal;
-    let (azimuth, elevation) = (scene.sun.azimuth, scene.sun.elevation);
-    let middle = DVec3::new(azimuth.sin() * elevation.cos(), azimuth.cos() * elevation.cos(), elevation.sin());
+    let middle = to_sun(scene);
     let (aside, up) = middle.any_orthonormal_pair();
     let sun = mean(16, |u, v| {
         let (sin, cos) = (TAU * v).sin_cos();
@@ -159,7 +156,7 @@ fn what_a_lens_hides_leaves_the_sky_open() {
         let scene = lit(camera, vec![kept.clone()]);
         let picture = drawn(&mut studio, &scene, 16, backend);
         let [still, gone] = [&BOXES[..], &without].map(|boxes| errors(&scene, &picture, boxes));
-        assert!(still.1 < 0.014 && gone.1 > 2.0 * still.1, "{backend:?}: {still:?}, {gone:?}");
+        assert!(still.1 < 0.014 && gone.1 > 1.5 * still.1, "{backend:?}: {still:?}, {gone:?}");
     }
 }
 
@@ -175,9 +172,11 @@ fn filters_and_layers_see_whole_samples() {
     glass.effects[0].parameters = BTreeMap::from([("opacity".into(), Parameter::Number(1.0))]);
     // What is seen through casts no shadows of its own.
     glass.keeps_shadows = true;
-    // A sun in the walls' faces, and the colours of the file, which are lighter than clay.
-    let mut white = Scene { style: Style::default(), ..lit(camera, vec![]) };
+    // White walls with the sun in their faces: single samples are brighter than any picture.
+    let mut white = lit(camera, vec![]);
     white.sun.elevation = 0.3;
+    let parameters = BTreeMap::from([("color".into(), Parameter::Text("#ffffff".into()))]);
+    white.style.effects = vec![EffectUse { parameters, ..used("clay") }];
     for mut scene in [lit(camera, vec![]), white] {
         for transparency in [Transparency::Exact, Transparency::of("k-buffer", None).unwrap().expect("a method")] {
             scene.style.transparency = transparency;
