@@ -30,7 +30,7 @@ fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     let line = max(across(point, vec2i(1, 0), p.creases), across(point, vec2i(0, 1), p.creases));
     // Lines of far things would be all there is.
     let fade = clamp(90.0 * 0.02 / metres_per_pixel(point), 0.25, 1.0);
-    return mix(color, p.color, line * p.strength * fade);
+    return mix(color, p.color, line * p.strength * fade * not_faded(point));
 }
 
 // The line between the two neighbours on either side.

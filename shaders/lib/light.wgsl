@@ -9,7 +9,7 @@ struct Light {
     shadow_levels: f32,         // a whole number: where the levels grow from, in 64ths of their sides, x and from bit 8 on y; from bit 16 on how
                                 // much wider each is than the last
     ground: vec3f,
-    reserved_1: f32,
+    fade_width: f32,            // metres from `fade` at which nothing is left of the plain ground
     // From positions relative to the eye: right and down from where the levels grow from, as the sun sees it, metres; depth as
     // the map stores it.
     sun_from_relative: mat4x4f,
@@ -25,6 +25,7 @@ struct Light {
     sky_weight: f32,            // the solid angle that it stands for, over pi and over the sample's share
     sky_spread: f32,            // how far around it filters look, as a tangent
     sky_from_relative: mat4x4f,
+    fade: vec4f,                // the rectangle from which on the plain ground fades: its middle, relative to the eye, and half its sides, metres
 }
 
 @group(1) @binding(4) var shadow_map: texture_depth_2d;
@@ -128,7 +129,9 @@ fn place_in(depths: texture_depth_2d, map: LightMap, relative: vec3f, normal: ve
     let local = start.xy * scale + shift;
     let low = vec2f(f32(level & 1u), f32(level >> 1u)) * side;
     let towards = max(push.z * map.depth_step, LEAST_TOWARDS);
-    return MapPlace(low + local * side, low, low + side, start.z + 0.35 * metres / map.depth_step, push.xy * (-1.0 / (towards * map.depth_step)),
+    // Beyond all that the map shows, still before what it is cleared to.
+    let depth = max(start.z + 0.35 * metres / map.depth_step, 1e-6);
+    return MapPlace(low + local * side, low, low + side, depth, push.xy * (-1.0 / (towards * map.depth_step)),
                     map.depth_step, metres, scale * side, any(local < vec2f(0.0)) || any(local > vec2f(1.0)));
 }
 
@@ -226,6 +229,14 @@ override BACKGROUND: u32 = 0u;
 const SKY: u32 = 0u;
 const ONE_COLOR: u32 = 1u;
 const NOTHING: u32 = 2u;
+
+// What is behind the city in a direction, which need not be unit; nothing is black.
+fn behind_city(direction: vec3f) -> vec3f {
+    if BACKGROUND == SKY {
+        return sky_color(direction);
+    }
+    return select(vec3f(0.0), light.zenith, BACKGROUND == ONE_COLOR);
+}
 
 fn sky_color(direction: vec3f) -> vec3f {
     let height = clamp(direction.z * inverseSqrt(dot(direction, direction)), 0.0, 1.0);

@@ -4,6 +4,7 @@ override SMOOTH: bool = false;      // whether normals are in the target, not wi
 override TEXTURED: bool = false;    // whether base colours are in a target of their own
 override CLAY: bool = false;        // one colour for everything
 override EMITS: bool = false;       // whether some surfaces have light of their own
+override GROUND_FADES: bool = false;    // whether there is a plain ground
 override SECTIONS: bool = false;    // whether some of what is shown are sections; their colours are in the target
 
 // The shown surface at a pixel; `surface` is NO_SURFACE where there is none (D infinite).
@@ -142,6 +143,23 @@ fn beside(point: Point, offset: vec2i) -> Beside {
     let surface = surface_shown(code.x - 1u);
     let normal = decode_normal(select(surface.normal, code.y, SMOOTH));
     return Beside(textureLoad(scene_depth, pixel, 0), normal, surface.object, code.x - 1u);
+}
+
+// How much of a point is seen before what is behind the city, 0..1: plain ground fades away from it.
+fn not_faded(point: Point) -> f32 {
+    if !GROUND_FADES || point.object != NO_OBJECT || point.part != PART_TERRAIN {
+        return 1.0;
+    }
+    let beyond = max(abs(point.relative.xy - light.fade.xy) - light.fade.zw, vec2f(0.0));
+    return 1.0 - smoothstep(0.0, light.fade_width, length(beyond));
+}
+
+// A colour as it is seen before the sky.
+fn before_sky(color: vec3f, point: Point) -> vec3f {
+    if !GROUND_FADES || BACKGROUND == NOTHING {
+        return color;
+    }
+    return mix(behind_city(point.relative), color, not_faded(point));
 }
 
 // From a point to the eye: unit, world axes.

@@ -85,6 +85,10 @@ fn take(in: Corner) {
     light.zenith = in.zenith.xyz;
     light.horizon = in.horizon.xyz;
     light.scene_radius = in.sky.w;
+    if GROUND_FADES {
+        light.fade = light_uniform.fade;
+        light.fade_width = light_uniform.fade_width;
+    }
     if SKY_SHADOWS {
         light.to_sky = light_uniform.to_sky;
         light.sky_scale = light_uniform.sky_scale;
@@ -157,17 +161,13 @@ fn paint_of_surface(pixel: vec2i, middle: vec2f, depth: f32, part: u32) -> vec4f
     let ray = ray_of_pixel(middle);
     var point = point_at(pixel, ray, depth);
     let classes = classes_at(sight_of_point(point, ray), part);
-    return finished(vec4f(shade(&point, classes), 1.0), point, pixel, classes);
+    let color = shade(&point, classes);
+    return finished(vec4f(color, select(1.0, not_faded(point), BACKGROUND == NOTHING)), point, pixel, classes);
 }
 
 fn paint_of_background(pixel: vec2i, middle: vec2f, part: u32) -> vec4f {
     let ray = ray_of_pixel(middle);
-    var paint = vec4f(0.0);
-    if BACKGROUND == SKY {
-        paint = vec4f(sky_color(ray.direction * view.view_from_world), 1.0);
-    } else if BACKGROUND == ONE_COLOR {
-        paint = vec4f(light.zenith, 1.0);
-    }
+    let paint = vec4f(behind_city(ray.direction * view.view_from_world), select(1.0, 0.0, BACKGROUND == NOTHING));
     let point = nowhere(pixel);
     let classes = classes_at(sight_at(pixel, ray, 0.0, NO_OBJECT), part);
     return finished(vec4f(styled(paint.rgb, point, classes), paint.a), point, pixel, classes);

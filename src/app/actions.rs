@@ -47,6 +47,8 @@ pub enum Action {
     /// On or off.
     ToggleLens,
     /// The whole city.
+    GoHome,
+    /// Shows all from the present direction.
     FrameAll,
     /// The chosen lens or object.
     FrameChosen,
@@ -168,7 +170,8 @@ pub const ROWS: &[Row] = &[
     row(Action::IsolateObject, Menu::Object, "Isolate", plain(Key::I)),
     row(Action::ShowAll, Menu::Object, "Show all", shift(Key::H)),
     row(Action::Draw(Figure::Measure), Menu::Object, "Measure distances", plain(Key::K)),
-    row(Action::FrameAll, Menu::View, "Frame all", plain(Key::Home)),
+    row(Action::GoHome, Menu::View, "First view", plain(Key::Home)),
+    row(Action::FrameAll, Menu::View, "Frame all", shift(Key::Home)),
     row(Action::FrameChosen, Menu::View, "Frame what is chosen", plain(Key::F)),
     row(Action::Look(Axis::Top), Menu::View, "From above", plain(Key::Num7)),
     row(Action::Look(Axis::South), Menu::View, "From the south", plain(Key::Num1)),

@@ -156,6 +156,7 @@ impl Window {
             return;
         }
         let before = self.document.scene().camera;
+        self.canvas.home = self.canvas.home.or(before);
         self.move_eye(ui, &response, rect);
         if self.document.scene().camera != before {
             self.canvas.moved_at = Some(Instant::now());
@@ -230,7 +231,7 @@ impl Window {
             if let (true, Some(at)) = (scroll != 0.0, ui.input(|input| input.pointer.hover_pos())) {
                 if let Some(place) = self.place_at(rect, at) {
                     self.canvas.flight = None;
-                    self.document.look(navigate::zoom(&camera, place, (-ZOOM * f64::from(scroll)).exp()));
+                    self.look(navigate::zoom(&camera, place, (-ZOOM * f64::from(scroll)).exp()));
                 }
                 return;
             }
@@ -294,13 +295,13 @@ impl Window {
         match drag {
             _ if delta == Vec2::ZERO => {}
             // What is before the place goes with the pointer.
-            Drag::Orbit { pivot } => self.document.look(navigate::orbit(&camera, pivot, DVec2::new(turn.x, -turn.y))),
+            Drag::Orbit { pivot } => self.look(navigate::orbit(&camera, pivot, DVec2::new(turn.x, -turn.y))),
             // The picture goes with the pointer.
-            Drag::Look => self.document.look(navigate::look_around(&camera, DVec2::new(-turn.x, turn.y))),
+            Drag::Look => self.look(navigate::look_around(&camera, DVec2::new(-turn.x, turn.y))),
             Drag::Pan { at } => {
                 if let Some(view) = self.view_in(rect) {
                     let to = navigate::pan(&view, at, in_rect(rect, now - delta), in_rect(rect, now));
-                    self.document.look(to);
+                    self.look(to);
                 }
             }
             Drag::Gizmo(grip) => {
@@ -375,13 +376,13 @@ impl Window {
         if self.walks {
             let speed = if fast { FAST_WALK_M_S } else { WALK_M_S };
             let steps = DVec2::new(way.x, way.y) * speed * step.max(1e-3);
-            let to = navigate::walk(&camera, steps, |at| self.ground_at(at, camera.eye.z), EYE_HEIGHT_M);
-            self.document.look(to);
+            let to = navigate::walk(&camera, steps, |at| self.ground_at(at), EYE_HEIGHT_M);
+            self.look(to);
             ui.ctx().request_repaint();
             return;
         }
         let speed = (0.6 * camera.eye.distance(camera.target)).clamp(3.0, 2_000.0) * if fast { 4.0 } else { 1.0 };
-        self.document.look(navigate::travel(&camera, way * speed * step.max(1e-3), false));
+        self.look(navigate::travel(&camera, way * speed * step.max(1e-3), false));
         ui.ctx().request_repaint();
     }
 
@@ -404,15 +405,15 @@ impl Window {
         self.canvas.flight = None;
         let step = step.max(1e-3);
         if nearer != 0.0 {
-            self.document.look(navigate::zoom(&camera, camera.target, (-KEY_ZOOM * nearer.signum() * step).exp()));
+            self.look(navigate::zoom(&camera, camera.target, (-KEY_ZOOM * nearer.signum() * step).exp()));
         } else if shift {
             if let Some(view) = self.view_in(rect) {
                 let middle = in_rect(rect, rect.center());
                 let to = middle - turn * KEY_PAN * f64::from(rect.height()) * step;
-                self.document.look(navigate::pan(&view, camera.target, middle, to));
+                self.look(navigate::pan(&view, camera.target, middle, to));
             }
         } else {
-            self.document.look(navigate::orbit(&camera, camera.target, KEY_TURN * step * turn));
+            self.look(navigate::orbit(&camera, camera.target, KEY_TURN * step * turn));
         }
         ui.ctx().request_repaint();
     }

@@ -5,7 +5,11 @@ use std::{sync::Arc, time::Instant};
 use eframe::egui::{Mesh, Pos2, Rect, TextureHandle, Vec2};
 use glam::DVec3;
 
-use crate::{app::gizmo::places::GizmoKind, lens::Region, view::navigate::Flight};
+use crate::{
+    app::gizmo::places::GizmoKind,
+    lens::Region,
+    view::{Camera, navigate::Flight},
+};
 
 /// The effect of a drag.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +44,8 @@ pub struct Canvas {
     /// The next move is down to the ground.
     pub(super) step_down: bool,
     pub(super) outlines: Option<Outlines>,
+    /// The first view of what is open.
+    pub(super) home: Option<Camera>,
 }
 
 /// The thing under the pointer.

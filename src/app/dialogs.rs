@@ -45,7 +45,7 @@ pub fn show(window: &mut Window, context: &Context) {
 fn figure_note(window: &Window, dialog: &FileDialog) -> Option<String> {
     let figure = &window.document.scene().figure;
     let [w, h] = figure.size;
-    let samples = figure.samples;
+    let samples = figure.samples();
     (dialog.wanted == Wanted::Write(Writing::Figure)).then(|| {
         format!(
             "{w} × {h} pixels, {samples} {} each; see Figure in the panel on the left.",

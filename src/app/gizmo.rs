@@ -44,16 +44,15 @@ impl Window {
     }
 
     /// The height of the ground at a place in plan, both counted from an origin.
-    fn ground_from(&self, origin: DVec3, view: &View) -> impl Fn(DVec2) -> Option<f64> {
-        let eye_z = view.camera.eye.z;
-        move |plan| self.ground_at(plan + origin.truncate(), eye_z).map(|z| z - origin.z)
+    fn ground_from(&self, origin: DVec3) -> impl Fn(DVec2) -> Option<f64> {
+        move |plan| self.ground_at(plan + origin.truncate()).map(|z| z - origin.z)
     }
 
     /// The middles of a lens' shapes and, of the chosen one, all that can be held, the first before what it would cover.
     fn gizmos_of(&self, index: usize, view: &View, rect: Rect) -> Vec<Gizmo> {
         let Some(lens) = self.document.scene().lenses.get(index) else { return Vec::new() };
         let Some(origin) = self.origin_of(lens) else { return Vec::new() };
-        let ground = self.ground_from(origin, view);
+        let ground = self.ground_from(origin);
         let is_held = self.chosen.lens == Some(index) && !self.is_locked(lens);
         let mut shown: Vec<Gizmo> = Vec::new();
         for (shape, region) in lens.shapes.iter().enumerate().filter_map(|(i, own)| Some((i, own.own_shape()?))) {
@@ -178,7 +177,7 @@ impl Window {
 
     fn draw_wires(&self, painter: &Painter, lens: &Lens, view: &View, rect: Rect, color: Color32) {
         let Some(origin) = self.origin_of(lens) else { return };
-        let ground = self.ground_from(origin, view);
+        let ground = self.ground_from(origin);
         for wire in lens.shapes.iter().filter_map(Region::own_shape).flat_map(|region| places::wires(region, &ground)) {
             for ends in wire.windows(2) {
                 if let (Some(a), Some(b)) =

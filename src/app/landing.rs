@@ -6,8 +6,9 @@ use glam::{DVec2, DVec3};
 
 use crate::{
     app::state::Window,
+    city::place::Places,
     geom::Ray,
-    view::{Camera, navigate},
+    view::{Camera, Projection, navigate},
 };
 
 /// The height of eyes, metres.
@@ -32,7 +33,7 @@ impl Window {
     pub(super) fn landing(&self, camera: &Camera) -> Camera {
         let Some(city) = &self.city else { return *camera };
         let here = camera.eye.truncate();
-        let is_low = self.ground_at(here, camera.eye.z).is_none_or(|ground| camera.eye.z - ground < LOW_M);
+        let is_low = self.ground_at(here).is_none_or(|ground| camera.eye.z - ground < LOW_M);
         let chosen = self.chosen.object.filter(|object| !self.is_ground(*object));
         let bounds = chosen.map(|object| city.model.family_bounds(object));
         let (wanted, at) = match bounds.filter(|bounds| !bounds.is_empty()) {
@@ -46,24 +47,34 @@ impl Window {
             None => (self.canvas.middle(self.frame.as_deref()).unwrap_or(camera.target).truncate(), None),
         };
         let place = free_near(wanted, |place| self.is_free(place));
-        match self.ground_at(place, camera.eye.z) {
+        match self.ground_at(place) {
             Some(ground) => navigate::landed(camera, place.extend(ground + EYE_HEIGHT_M), at),
             None => *camera,
         }
     }
 
-    /// The height of the ground at a place in plan, metres: of terrain, roads and the like, else of the lowest place of the city.
-    pub(super) fn ground_at(&self, at: DVec2, eye_z: f64) -> Option<f64> {
+    /// The height of the ground at a place in plan, metres: of terrain, roads and the like, else of the plain ground, else of the lowest
+    /// place of the city.
+    pub(super) fn ground_at(&self, at: DVec2) -> Option<f64> {
+        let lowest = self.city.as_ref()?.extent.min.z;
+        self.places().map(|places| places.ground(at).unwrap_or(lowest))
+    }
+
+    /// What is at places of the city, once that is known.
+    fn places(&self) -> Option<Places<'_>> {
         let city = self.city.as_ref()?;
-        let top = city.extent.max.z.max(eye_z) + 1.0;
-        let ray = Ray { origin: at.extend(top), direction: DVec3::NEG_Z };
-        let mut nearest = f64::INFINITY;
-        city.index.get()?.hits(&city.model, &ray, f64::INFINITY, |hit| {
-            if self.is_ground(hit.object) {
-                nearest = nearest.min(hit.t);
+        Some(Places { model: &city.model, index: city.index.get()?, ground: city.ground.as_deref() })
+    }
+
+    /// Moves the eye as a person does: not below the ground, and not into a building; from there anywhere.
+    pub(super) fn look(&mut self, to: Camera) {
+        let kept = match (self.camera(), self.places()) {
+            (Some(from), Some(places)) if matches!(to.projection, Projection::Perspective { .. }) => {
+                kept(&from, to, |eye| places.kept(from.eye, eye))
             }
-        });
-        Some(if nearest.is_finite() { top - nearest } else { city.extent.min.z })
+            _ => to,
+        };
+        self.document.look(kept);
     }
 
     fn is_ground(&self, object: u32) -> bool {
@@ -86,6 +97,17 @@ impl Window {
             is_open
         };
         is_open(place) && (0..8).all(|i| is_open(place + ROOM_M * DVec2::from_angle(TAU * f64::from(i) / 8.0)))
+    }
+}
+
+/// A camera on its way `to` somewhere whose eye comes where it may: what it looks at stays where that did not move, else it goes along.
+fn kept(from: &Camera, to: Camera, eye: impl Fn(DVec3) -> DVec3) -> Camera {
+    let kept = eye(to.eye);
+    match kept {
+        kept if kept == to.eye => to,
+        kept if kept == from.eye => *from,
+        kept if to.target == from.target => Camera { eye: kept, ..to },
+        kept => Camera { eye: kept, target: to.target + (kept - to.eye), ..to },
     }
 }
 

@@ -25,6 +25,7 @@ use crate::{
     app::user_effects::{self, Watch},
     city::{
         CityModel, Lod, facts,
+        ground::Ground,
         load::{self, LoadOptions, LoadStats, Stage},
         spatial::SpatialIndex,
     },
@@ -120,6 +121,8 @@ pub struct Opened {
     pub levels: Vec<String>,
     /// Finds what is shown along a ray, once that is known: after the first picture.
     pub index: Arc<OnceLock<SpatialIndex>>,
+    /// The plain ground under it.
+    pub ground: Option<Arc<Ground>>,
     /// Around what is shown, metres; empty for an empty city.
     pub extent: Aabb,
     /// Kinds of warnings about its files.
@@ -517,6 +520,7 @@ impl Worker {
             types: types_of(&model),
             levels: levels_of(&model),
             index: studio.index().clone(),
+            ground: studio.ground.clone(),
             extent: studio.extent(),
             warnings,
             adapter: gpu.name(),
@@ -615,7 +619,7 @@ impl Worker {
 
     fn write(&mut self, export: &Export) {
         let Export { scene, file, notes } = export;
-        let request = Request { samples: scene.figure.samples, ..Request::plain(scene.figure.size) };
+        let request = Request { samples: scene.figure.samples(), ..Request::plain(scene.figure.size) };
         // What is written is not interrupted by what is to be drawn next.
         let written = self.with_studio(|studio, _| {
             let interrupt = std::mem::take(&mut studio.interrupt);

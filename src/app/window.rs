@@ -211,8 +211,13 @@ impl Window {
         let mut roots: Vec<PathBuf> = self.spec.files.iter().filter(|path| path.is_dir()).cloned().collect();
         roots.push(document.options().base);
         self.loading = Some("Reading".to_owned());
-        let reading =
-            LoadOptions { allow_outside: self.allows_outside, roots, up: self.spec.up, ..LoadOptions::default() };
+        let reading = LoadOptions {
+            allow_outside: self.allows_outside,
+            roots,
+            up: self.spec.up,
+            materials: self.spec.materials,
+            ..LoadOptions::default()
+        };
         self.render_thread.open(self.spec.clone(), reading);
     }
 

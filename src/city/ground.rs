@@ -1,306 +1,281 @@
-//! A plain ground under a city that has no terrain of its own, so that buildings stand on something.
+//! A plain ground under a city and around it, so that buildings stand on something, and the picture does not end where the data does.
 //!
-//! A height field through the bases of the buildings: every grid point around a building lies no higher than its base,
-//! so the ground never cuts through a ground floor (what files do not say the type of may be a lamp or an upper floor: it all has the
-//! base of the lowest); between buildings heights are relaxed (Laplace's equation with the
-//! bases fixed), and towards the border they level out by themselves. It is no part of the model: `info`, the picker
-//! and the lists of objects never see it.
+//! A height field through the bases of the buildings, just below terrain, roads, water and land where files have them: it shows where
+//! they have gaps, and beyond their rim. Between what is known heights are smooth; around the city they level out, up to where the ground
+//! has faded into what is behind it. It is no part of the model: `info`, the picker and the lists of objects never see it.
+
+mod field;
+mod net;
+
+use std::ops::Range;
 
 use glam::{DVec2, DVec3, IVec3, Vec3};
 use rustc_hash::FxHashMap;
-use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use crate::{
-    city::model::{CityModel, NONE, ObjectClass, Tile, Vertex, encode_normal},
+    city::{
+        ground::field::HeightField,
+        model::{CityModel, NONE, ObjectClass, Tile, Vertex, encode_normal},
+    },
     geom::Aabb,
 };
 
 /// The distance of the ground below the bases, metres: enough for depth to tell it from ground floors.
-pub const BELOW_M: f64 = 0.05;
-/// The ground reaches at least this far beyond the buildings, metres, ...
+pub const BELOW_M: f64 = 0.04;
+/// The same below terrain, roads, water and land.
+pub const BELOW_TERRAIN_M: f64 = 0.25;
+/// Around the city the ground is as it is below it for at least so many metres, ...
 const LEAST_MARGIN_M: f64 = 60.0;
-/// ... and this part of the diagonal of their extent.
+/// ... and this part of the diagonal of its extent.
 const MARGIN: f64 = 0.12;
-/// Grid points along the longer side: about 17,000 in all.
-const POINTS_PER_SIDE: f64 = 130.0;
-/// No grid is finer, metres.
-const LEAST_STEP_M: f64 = 2.0;
+/// From there on it fades: over so many diagonals, ...
+const FADE: f64 = 0.8;
+/// ... and at least so many metres.
+const LEAST_FADE_M: f64 = 300.0;
 /// Families of buildings (a building and its parts) share a base up to this size, metres; larger ones are groups.
 const LARGEST_FAMILY_M: f64 = 500.0;
-/// Rounds of relaxation; heights start from the nearest base, so this only smooths.
-const ROUNDS: usize = 60;
 
 /// A plain ground: tiles as in the model, but of no geometry, with surface [`NONE`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ground {
     /// Its tiles; `geometry` and `texcoords` are [`NONE`].
     pub tiles: Vec<Tile>,
+    /// Which of them lie below the city, and within its margin; the others around it.
+    pub below: Range<usize>,
     /// Vertices, grouped by tile; `surface` is [`NONE`].
     pub vertices: Vec<Vertex>,
     /// Three per triangle, counter-clockwise from above, relative to the tile's first vertex.
     pub indices: Vec<u32>,
     /// Box around all vertices, metres.
     pub bounds: Aabb,
+    /// How it fades.
+    pub fade: Fade,
+    field: HeightField,
 }
 
-/// The plain ground for the geometries `shown`; `None` if there are none, or one of them is ground itself.
+/// How the plain ground fades into what is behind it: by the distance from a rectangle, seen from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fade {
+    /// The rectangle's middle, metres.
+    pub middle: DVec2,
+    /// Half of its sides, metres.
+    pub half: DVec2,
+    /// How far from it nothing is left, metres.
+    pub width: f64,
+}
+
+impl Ground {
+    /// Its height at a place in plan, metres: to 3 cm what is drawn; beyond what lies below the city, that of the nearest place.
+    pub fn height(&self, at: DVec2) -> f64 {
+        self.field.height(at)
+    }
+
+    /// Box around what lies below the city, metres.
+    pub fn bounds_below(&self) -> Aabb {
+        self.tiles[self.below.clone()].iter().fold(Aabb::EMPTY, |all, tile| all.union(tile.bounds))
+    }
+}
+
+/// The plain ground for the geometries `shown`; `None` if there are none.
 pub fn plain_ground(model: &CityModel, shown: &[u32]) -> Option<Ground> {
-    let footprints = footprints(model, shown)?;
-    let built = footprints.iter().fold(Aabb::EMPTY, |all, footprint| all.union(*footprint));
-    let field = HeightField::through(footprints, built);
-    Some(field.surface())
+    let known = Known::new(model, shown);
+    let built = known.bounds();
+    if built.is_empty() {
+        return None;
+    }
+    let size = built.size().truncate();
+    let margin = LEAST_MARGIN_M.max(MARGIN * size.length());
+    let fade = Fade {
+        middle: built.center().truncate(),
+        half: 0.5 * size + 0.5 * margin,
+        width: LEAST_FADE_M.max(FADE * size.length()),
+    };
+    let mut field = HeightField::over(fade.middle, (0.5 * size + margin).max_element());
+    known.put_into(model, &mut field);
+    field.fill();
+    let mut net = net::Net::of(&field, 0.5 * margin + fade.width);
+    known.rims(model, &field).iter().for_each(|rim| net.hang(rim, &field));
+    let tile_m = (16.0 * field.step).max(64.0).ceil();
+    let mut ground = Ground {
+        tiles: Vec::new(),
+        below: 0..0,
+        vertices: Vec::new(),
+        indices: Vec::new(),
+        bounds: Aabb::EMPTY,
+        fade,
+        field,
+    };
+    ground.add(&net.points, &net.below, tile_m);
+    ground.below = 0..ground.tiles.len();
+    ground.add(&net.points, &net.around, (8.0 * tile_m).max(fade.width));
+    Some(ground)
 }
 
-/// A box per shown geometry, its `min.z` the base of the building it is part of.
-fn footprints(model: &CityModel, shown: &[u32]) -> Option<Vec<Aabb>> {
-    let mut found: Vec<(u32, Aabb)> = Vec::new();
-    for geometry in shown.iter().filter_map(|&geometry| model.geometries.get(geometry as usize)) {
-        if model.objects[geometry.object as usize].class.is_ground() && geometry.triangles > 0 {
-            return None;
+/// What is known of the height of the ground.
+struct Known {
+    /// Geometries that stand on it, each with its base, metres.
+    standing: Vec<(u32, f64)>,
+    /// Geometries that are ground.
+    ground: Vec<u32>,
+    /// Box around all of them, metres.
+    bounds: Aabb,
+}
+
+impl Known {
+    fn new(model: &CityModel, shown: &[u32]) -> Self {
+        let mut found: Vec<(u32, u32, Aabb)> = Vec::new();
+        let mut ground = Vec::new();
+        let mut bounds = Aabb::EMPTY;
+        for &number in shown {
+            let Some(geometry) = model.geometries.get(number as usize) else { continue };
+            let tiles = &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize];
+            let of_geometry = tiles.iter().fold(Aabb::EMPTY, |all, tile| all.union(tile.bounds));
+            if of_geometry.is_empty() || geometry.triangles == 0 {
+                continue;
+            }
+            if model.objects[geometry.object as usize].class.is_ground() {
+                ground.push(number);
+                bounds = bounds.union(of_geometry);
+            } else {
+                found.push((number, geometry.object, of_geometry));
+            }
         }
-        let tiles = &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize];
-        let bounds = tiles.iter().fold(Aabb::EMPTY, |all, tile| all.union(tile.bounds));
-        if !bounds.is_empty() {
-            found.push((geometry.object, bounds));
+        // Bridges and trees say little about the ground; they count where there is nothing else.
+        let is_building = |object: u32| model.objects[object as usize].class == ObjectClass::Building;
+        if !ground.is_empty() || found.iter().any(|&(_, object, _)| is_building(object)) {
+            found.retain(|&(_, object, _)| is_building(object));
+        }
+        let bounds = found.iter().fold(bounds, |all, (_, _, own)| all.union(*own));
+        Self { standing: bases(model, &found), ground, bounds }
+    }
+
+    fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Tells a field of it.
+    fn put_into(&self, model: &CityModel, field: &mut HeightField) {
+        for &geometry in &self.ground {
+            triangles(model, geometry).for_each(|triangle| field.lies_below(&triangle, BELOW_TERRAIN_M));
+        }
+        // The lowest first: what stands much higher stands on something else.
+        for &(geometry, base) in &self.standing {
+            triangles(model, geometry).for_each(|triangle| field.reaches(&triangle, base - BELOW_M));
         }
     }
-    // Bridges and trees say little about the ground; they count where there is nothing else.
-    let is_building = |object: u32| model.objects[object as usize].class == ObjectClass::Building;
-    if found.iter().any(|&(object, _)| is_building(object)) {
-        found.retain(|&(object, _)| is_building(object));
+
+    /// Edges where terrain ends: of one triangle only, with nothing of it farther out.
+    fn rims(&self, model: &CityModel, field: &HeightField) -> Vec<[DVec3; 2]> {
+        // Millimetres: neighbours have the same corners, whatever tiles they are in.
+        let key = |p: DVec3| (1e3 * p).round().as_i64vec3();
+        let mut edges: FxHashMap<_, Option<[DVec3; 2]>> = FxHashMap::default();
+        for [a, b, c] in self.ground.iter().flat_map(|&geometry| triangles(model, geometry)) {
+            for [from, to] in [[a, b], [b, c], [c, a]] {
+                let ends = [key(from), key(to)];
+                let edge = if ends[0].to_array() < ends[1].to_array() { ends } else { [ends[1], ends[0]] };
+                edges.entry(edge).and_modify(|once| *once = None).or_insert(Some([from, to]));
+            }
+        }
+        // Counter-clockwise from above: what lies to the right of an edge is outside.
+        let is_rim = |[from, to]: &[DVec3; 2]| {
+            let along = (*to - *from).truncate();
+            let outwards = -along.perp().normalize_or_zero();
+            outwards != DVec2::ZERO && !field.has_terrain(0.5 * (*from + *to).truncate() + 1.5 * field.step * outwards)
+        };
+        let mut rims: Vec<[DVec3; 2]> = edges.into_values().flatten().filter(is_rim).collect();
+        let order = |rim: &[DVec3; 2]| rim.map(|p| p.to_array().map(f64::to_bits));
+        rims.sort_unstable_by_key(order);
+        rims
     }
+}
+
+/// The corners of the triangles of a geometry, metres.
+fn triangles(model: &CityModel, geometry: u32) -> impl Iterator<Item = [DVec3; 3]> {
+    let tiles = model.geometries[geometry as usize].tiles.clone();
+    let tiles = &model.tiles[tiles.start as usize..tiles.end as usize];
+    let corners = |tile: &Tile, t: u32| {
+        [0, 1, 2].map(|k| {
+            let vertex = tile.vertices.start + model.indices[(3 * t + k) as usize];
+            tile.origin.as_dvec3() + Vec3::from(model.vertices[vertex as usize].position).as_dvec3()
+        })
+    };
+    tiles.iter().flat_map(move |tile| {
+        (tile.indices.start / 3..tile.indices.end / 3).map(move |triangle| corners(tile, triangle))
+    })
+}
+
+/// The base of the building that each geometry is part of, metres, ascending.
+fn bases(model: &CityModel, found: &[(u32, u32, Aabb)]) -> Vec<(u32, f64)> {
     let roots = model.roots();
     let mut families: FxHashMap<u32, Aabb> = FxHashMap::default();
-    for &(object, bounds) in &found {
+    for &(_, object, bounds) in found {
         let family = families.entry(roots[object as usize]).or_insert(Aabb::EMPTY);
         *family = family.union(bounds);
     }
-    let untyped = found.iter().filter(|(object, _)| model.is_untyped(*object));
-    let level = untyped.map(|(_, bounds)| bounds.min.z).fold(f64::INFINITY, f64::min);
-    let with_base = |(object, mut bounds): (u32, Aabb)| {
-        if model.is_untyped(object) {
-            bounds.min.z = level;
-            return bounds;
-        }
-        let family = families[&roots[object as usize]];
-        if family.size().truncate().max_element() <= LARGEST_FAMILY_M {
-            bounds.min.z = family.min.z;
-        }
-        bounds
+    // What files do not say the type of may be a lamp or an upper floor: it all has the base of the lowest.
+    let untyped = found.iter().filter(|(_, object, _)| model.is_untyped(*object));
+    let level = untyped.map(|(_, _, bounds)| bounds.min.z).fold(f64::INFINITY, f64::min);
+    let is_part = |object: u32| {
+        let object = &model.objects[object as usize];
+        object.parents.is_empty() || model.strings.get(object.kind) == "BuildingPart"
     };
-    (!found.is_empty()).then(|| found.into_iter().map(with_base).collect())
-}
-
-/// Heights on a regular grid.
-struct HeightField {
-    /// The grid's first point, metres.
-    origin: DVec2,
-    /// Metres between points.
-    step: f64,
-    columns: usize,
-    rows: usize,
-    /// Row by row.
-    heights: Vec<f64>,
-    /// The border: a rounded rectangle.
-    middle: DVec2,
-    half_size: DVec2,
-    radius: f64,
-}
-
-impl HeightField {
-    fn through(mut footprints: Vec<Aabb>, built: Aabb) -> Self {
-        let size = built.size().truncate();
-        let margin = LEAST_MARGIN_M.max(MARGIN * size.length());
-        let half_size = 0.5 * size + margin;
-        let step = (2.0 * half_size.max_element() / POINTS_PER_SIDE).max(LEAST_STEP_M);
-        let middle = built.center().truncate();
-        let counts = (2.0 * half_size / step).ceil() + 1.0;
-        let (columns, rows) = (counts.x as usize, counts.y as usize);
-        let mut field = Self {
-            origin: middle - half_size,
-            step,
-            columns,
-            rows,
-            heights: vec![f64::NAN; columns * rows],
-            middle,
-            half_size,
-            radius: 1.5 * margin,
+    let base = |&(geometry, object, bounds): &(u32, u32, Aabb)| {
+        let family = families[&roots[object as usize]];
+        let is_family = family.size().truncate().max_element() <= LARGEST_FAMILY_M;
+        let base = match () {
+            () if model.is_untyped(object) => level,
+            // Parts on a slope have bases of their own; a balcony stands on its building.
+            () if is_family && !is_part(object) => family.min.z,
+            () => bounds.min.z,
         };
-        // Lowest first: a grid point takes the first base that reaches it and keeps it.
-        footprints.sort_by(|a, b| a.min.z.total_cmp(&b.min.z));
-        field.take_bases(&footprints);
-        let fixed: Vec<bool> = field.heights.iter().map(|height| height.is_finite()).collect();
-        field.spread();
-        field.relax(&fixed);
-        field
-    }
-
-    /// Sets the corners of all grid cells that a footprint touches to its base. Per row, `next` leads from each column
-    /// to the first one not yet set, so that every point is set once however many footprints lie there.
-    fn take_bases(&mut self, footprints: &[Aabb]) {
-        let mut next: Vec<u32> = (0..self.rows).flat_map(|_| 0..=self.columns as u32).collect();
-        let last = DVec2::new((self.columns - 1) as f64, (self.rows - 1) as f64);
-        for footprint in footprints {
-            let low = ((footprint.min.truncate() - self.origin) / self.step).floor().clamp(DVec2::ZERO, last);
-            let high = (((footprint.max.truncate() - self.origin) / self.step).floor() + 1.0).clamp(DVec2::ZERO, last);
-            for row in low.y as usize..=high.y as usize {
-                let row_next = &mut next[row * (self.columns + 1)..(row + 1) * (self.columns + 1)];
-                let mut column = first_free(row_next, low.x as usize);
-                while column <= high.x as usize {
-                    self.heights[row * self.columns + column] = footprint.min.z;
-                    row_next[column] = column as u32 + 1;
-                    column = first_free(row_next, column);
-                }
-            }
-        }
-    }
-
-    /// Gives every free point the height of the nearest base (by steps along the grid).
-    fn spread(&mut self) {
-        let mut wave: Vec<usize> = (0..self.heights.len()).filter(|&i| self.heights[i].is_finite()).collect();
-        let mut at = 0;
-        while let Some(&i) = wave.get(at) {
-            at += 1;
-            for j in self.neighbours(i) {
-                if self.heights[j].is_nan() {
-                    self.heights[j] = self.heights[i];
-                    wave.push(j);
-                }
-            }
-        }
-    }
-
-    /// Moves free points to the mean of their neighbours, again and again; at the border there is no slope.
-    fn relax(&mut self, fixed: &[bool]) {
-        for _ in 0..ROUNDS {
-            for i in (0..self.heights.len()).filter(|&i| !fixed[i]) {
-                let (sum, count) =
-                    self.neighbours(i).fold((0.0, 0.0), |(sum, count), j| (sum + self.heights[j], count + 1.0));
-                self.heights[i] = sum / count;
-            }
-        }
-    }
-
-    fn neighbours(&self, i: usize) -> impl Iterator<Item = usize> + use<> {
-        let (columns, rows) = (self.columns, self.rows);
-        let (row, column) = (i / columns, i % columns);
-        [
-            (column > 0).then(|| i - 1),
-            (column + 1 < columns).then_some(i + 1),
-            (row > 0).then(|| i - columns),
-            (row + 1 < rows).then_some(i + columns),
-        ]
-        .into_iter()
-        .flatten()
-    }
-
-    /// Signed distance to the border, negative inside, metres.
-    fn beyond_border(&self, p: DVec2) -> f64 {
-        let radius = self.radius.min(self.half_size.min_element());
-        let from_core = (p - self.middle).abs() - (self.half_size - radius);
-        from_core.max(DVec2::ZERO).length() + from_core.max_element().min(0.0) - radius
-    }
-
-    /// The height at a place, from the grid points around it.
-    fn height(&self, p: DVec2) -> f64 {
-        let last = DVec2::new((self.columns - 1) as f64, (self.rows - 1) as f64);
-        let at = ((p - self.origin) / self.step).clamp(DVec2::ZERO, last);
-        let (cell, part) = (at.floor(), at - at.floor());
-        let (column, row) = (cell.x as usize, cell.y as usize);
-        let next = ((column + 1).min(self.columns - 1), (row + 1).min(self.rows - 1));
-        let get = |column: usize, row: usize| self.heights[row * self.columns + column];
-        let low = get(column, row) * (1.0 - part.x) + get(next.0, row) * part.x;
-        let high = get(column, next.1) * (1.0 - part.x) + get(next.0, next.1) * part.x;
-        low * (1.0 - part.y) + high * part.y
-    }
-
-    /// Points of the border, about a grid step apart, on the convex rounded rectangle.
-    fn border(&self) -> impl Iterator<Item = DVec2> {
-        let radius = self.radius.min(self.half_size.min_element());
-        let core = self.half_size - radius;
-        let per_corner = (std::f64::consts::FRAC_PI_2 * radius / self.step).ceil().clamp(4.0, 128.0) as usize;
-        (0..4).flat_map(move |corner| {
-            let sign = [DVec2::new(1.0, 1.0), DVec2::new(-1.0, 1.0), DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0)];
-            (0..=per_corner).map(move |k| {
-                let turn = (corner as f64 + k as f64 / per_corner as f64) * std::f64::consts::FRAC_PI_2;
-                self.middle + sign[corner] * core + radius * DVec2::from_angle(turn)
-            })
-        })
-    }
-
-    /// Triangles through the grid points within the border and the border itself, in tiles.
-    fn surface(&self) -> Ground {
-        let grid = (0..self.rows).flat_map(|row| {
-            (0..self.columns).map(move |column| self.origin + self.step * DVec2::new(column as f64, row as f64))
-        });
-        let inside = grid.filter(|&p| self.beyond_border(p) < -0.6 * self.step);
-        // Relative to the middle: no digits are lost in far-off coordinates.
-        let relative: Vec<Point2<f64>> =
-            inside.chain(self.border()).map(|p| p - self.middle).map(|p| Point2::new(p.x, p.y)).collect();
-        let net = DelaunayTriangulation::<Point2<f64>>::bulk_load(relative).unwrap_or_default();
-        let points: Vec<DVec3> = net
-            .vertices()
-            .map(|vertex| {
-                let p = self.middle + DVec2::new(vertex.position().x, vertex.position().y);
-                p.extend(self.height(p) - BELOW_M)
-            })
-            .collect();
-        let triangles: Vec<[usize; 3]> = net.inner_faces().map(|face| face.vertices().map(|v| v.index())).collect();
-        in_tiles(&points, &triangles, (16.0 * self.step).max(64.0).ceil())
-    }
+        (geometry, base)
+    };
+    let mut bases: Vec<(u32, f64)> = found.iter().map(base).collect();
+    bases.sort_by(|a, b| a.1.total_cmp(&b.1));
+    bases
 }
 
-/// The first column at or after `from` that is free (halving the way as it goes).
-fn first_free(next: &mut [u32], from: usize) -> usize {
-    let mut at = from;
-    while next[at] as usize != at {
-        let beyond = next[next[at] as usize];
-        next[at] = beyond;
-        at = beyond as usize;
-    }
-    at
-}
-
-/// Cuts a surface into tiles of `size` metres with smooth normals.
-fn in_tiles(points: &[DVec3], triangles: &[[usize; 3]], size: f64) -> Ground {
-    let mut normals = vec![DVec3::ZERO; points.len()];
-    let mut cells: Vec<([i64; 2], [usize; 3])> = Vec::with_capacity(triangles.len());
-    for &triangle in triangles {
-        let [a, b, c] = triangle.map(|i| points[i]);
-        let normal = (b - a).cross(c - a);
-        triangle.into_iter().for_each(|i| normals[i] += normal);
-        let cell = ((a + b + c) / (3.0 * size)).floor();
-        cells.push(([cell.x as i64, cell.y as i64], triangle));
-    }
-    cells.sort_unstable();
-    let mut ground = Ground { tiles: Vec::new(), vertices: Vec::new(), indices: Vec::new(), bounds: Aabb::EMPTY };
-    for tile in cells.chunk_by(|a, b| a.0 == b.0) {
-        let low = tile.iter().flat_map(|(_, triangle)| triangle).fold(DVec3::INFINITY, |low, &i| low.min(points[i]));
-        let origin: IVec3 = low.floor().as_ivec3();
-        let (first_vertex, first_index) = (ground.vertices.len() as u32, ground.indices.len() as u32);
-        let mut vertex_of: FxHashMap<usize, u32> = FxHashMap::default();
-        let mut bounds = Aabb::EMPTY;
-        for &i in tile.iter().flat_map(|(_, triangle)| triangle) {
-            let index = *vertex_of.entry(i).or_insert_with(|| {
-                let position: Vec3 = (points[i] - origin.as_dvec3()).as_vec3();
-                bounds = bounds.grown(origin.as_dvec3() + position.as_dvec3());
-                let normal = encode_normal(normals[i].normalize_or(DVec3::Z));
-                ground.vertices.push(Vertex { position: position.to_array(), normal, surface: NONE });
-                ground.vertices.len() as u32 - 1 - first_vertex
+impl Ground {
+    /// Adds a surface, cut into tiles of `size` metres, with smooth normals.
+    fn add(&mut self, points: &[DVec3], triangles: &[[u32; 3]], size: f64) {
+        let mut normals = vec![DVec3::ZERO; points.len()];
+        let mut cells: Vec<([i64; 2], [u32; 3])> = Vec::with_capacity(triangles.len());
+        for &triangle in triangles {
+            let [a, b, c] = triangle.map(|i| points[i as usize]);
+            let normal = (b - a).cross(c - a);
+            triangle.into_iter().for_each(|i| normals[i as usize] += normal);
+            let cell = ((a + b + c) / (3.0 * size)).floor();
+            cells.push(([cell.x as i64, cell.y as i64], triangle));
+        }
+        cells.sort_unstable();
+        for tile in cells.chunk_by(|a, b| a.0 == b.0) {
+            let corners = || tile.iter().flat_map(|(_, triangle)| triangle);
+            let low = corners().fold(DVec3::INFINITY, |low, &i| low.min(points[i as usize]));
+            let origin: IVec3 = low.floor().as_ivec3();
+            let (first_vertex, first_index) = (self.vertices.len() as u32, self.indices.len() as u32);
+            let mut vertex_of: FxHashMap<u32, u32> = FxHashMap::default();
+            let mut bounds = Aabb::EMPTY;
+            for &i in corners() {
+                let index = *vertex_of.entry(i).or_insert_with(|| {
+                    let position: Vec3 = (points[i as usize] - origin.as_dvec3()).as_vec3();
+                    bounds = bounds.grown(origin.as_dvec3() + position.as_dvec3());
+                    let normal = encode_normal(normals[i as usize].normalize_or(DVec3::Z));
+                    self.vertices.push(Vertex { position: position.to_array(), normal, surface: NONE });
+                    self.vertices.len() as u32 - 1 - first_vertex
+                });
+                self.indices.push(index);
+            }
+            self.bounds = self.bounds.union(bounds);
+            self.tiles.push(Tile {
+                origin,
+                geometry: NONE,
+                vertices: first_vertex..self.vertices.len() as u32,
+                indices: first_index..self.indices.len() as u32,
+                texcoords: NONE,
+                bounds,
             });
-            ground.indices.push(index);
         }
-        ground.bounds = ground.bounds.union(bounds);
-        ground.tiles.push(Tile {
-            origin,
-            geometry: NONE,
-            vertices: first_vertex..ground.vertices.len() as u32,
-            indices: first_index..ground.indices.len() as u32,
-            texcoords: NONE,
-            bounds,
-        });
     }
-    ground
 }
 
 #[cfg(test)]
@@ -346,15 +321,68 @@ mod tests {
             assert!((t[1] - t[0]).cross(t[2] - t[0]).z > 0.0, "seen from above");
             assert!(t.iter().all(|p| (p.z + BELOW_M).abs() < 1e-6));
         }
-        let extent = model.extent();
-        assert!(extent.min.truncate().cmpge(ground.bounds.min.truncate() + 59.0).all());
-        assert!(extent.max.truncate().cmple(ground.bounds.max.truncate() - 59.0).all());
-        assert!(ground.vertices.len() < 25_000);
+        let (extent, below) = (model.extent(), ground.bounds_below());
+        assert!(extent.min.truncate().cmpge(below.min.truncate() + 59.0).all());
+        assert!(extent.max.truncate().cmple(below.max.truncate() - 59.0).all());
+        // It goes on until it has faded.
+        let Fade { middle, half, width } = ground.fade;
+        assert!(ground.bounds.min.truncate().cmple(middle - half - width).all());
+        assert!(ground.bounds.max.truncate().cmpge(middle + half + width).all());
+        assert!(ground.vertices.len() < 1_500, "what is level takes {} vertices", ground.vertices.len());
         assert!(ground.vertices.iter().all(|v| v.surface == NONE));
     }
 
+    /// Each of its edges inside is of two triangles, and all of them together cover the square that it fills.
     #[test]
-    fn it_cuts_through_no_ground_floor_on_a_hill() {
+    fn it_has_no_gaps() {
+        let model = hill();
+        let ground = plain_ground(&model, &all(&model)).unwrap();
+        let triangles = triangles(&ground);
+        let area = |t: &[DVec3; 3]| 0.5 * (t[1] - t[0]).truncate().perp_dot((t[2] - t[0]).truncate());
+        assert!(triangles.iter().all(|t| area(t) > 0.0));
+        let key = |p: DVec3| (p * 64.0).round().as_i64vec3();
+        let mut edges: FxHashMap<_, i32> = FxHashMap::default();
+        for [a, b, c] in triangles.iter().map(|t| t.map(key)) {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                *edges.entry((from, to)).or_default() += 1;
+                *edges.entry((to, from)).or_default() -= 1;
+            }
+        }
+        let open: Vec<_> = edges.iter().filter(|(_, count)| **count > 0).collect();
+        let rim = |p: glam::I64Vec3| {
+            let beyond = ((p.as_dvec3() / 64.0).truncate() - ground.fade.middle).abs() - ground.fade.half;
+            beyond.max(DVec2::ZERO).length() > 0.99 * ground.fade.width
+        };
+        assert!(open.iter().all(|((a, b), _)| rim(*a) && rim(*b)), "{open:?}");
+    }
+
+    #[test]
+    fn it_lies_below_terrain_and_fills_its_holes() {
+        let mut model = terrain(4);
+        // A hole of one polygon.
+        let hole = model.geometries[0].tiles.start as usize;
+        let first = model.tiles[hole].indices.start as usize;
+        let gone: Vec<u32> = model.indices[first..first + 3].to_vec();
+        model.indices[first..first + 3].fill(gone[0]);
+        let ground = plain_ground(&model, &[0]).unwrap();
+        let triangles = triangles(&ground);
+        let tile = &model.tiles[hole];
+        let corner = |i: u32| {
+            let vertex = &model.vertices[(tile.vertices.start + i) as usize];
+            tile.origin.as_dvec3() + Vec3::from(vertex.position).as_dvec3()
+        };
+        for i in 0..(tile.vertices.end - tile.vertices.start) {
+            let place = corner(i);
+            let height = height_at(&triangles, place.truncate()).unwrap();
+            assert!(height < place.z - 0.5 * BELOW_TERRAIN_M, "{height} above {}", place.z);
+        }
+        let middle = gone.iter().map(|&i| corner(i)).sum::<DVec3>() / 3.0;
+        let height = height_at(&triangles, middle.truncate()).unwrap();
+        assert!((height - middle.z).abs() < 5.0, "{height} in a hole at {}", middle.z);
+    }
+
+    /// Houses on a slope, each on a base of its own.
+    fn hill() -> CityModel {
         let mut b = builder();
         let base = |x: i64, y: i64| 900 * x + (y * 7919) % 1300;
         for x in 0..20 {
@@ -363,15 +391,20 @@ mod tests {
                 add_box(&mut b, &format!("{x} {y}"), min, [min[0] + 12_000, min[1] + 14_000, min[2] + 8_000]);
             }
         }
-        let model = b.finish();
+        b.finish()
+    }
+
+    #[test]
+    fn it_reaches_every_ground_floor_on_a_hill_and_cuts_through_none() {
+        let model = hill();
         let ground = plain_ground(&model, &all(&model)).unwrap();
         let triangles = triangles(&ground);
         for geometry in model.geometries.iter().step_by(7) {
             let bounds = geometry.bounds;
             for corner in bounds.corners().into_iter().chain([bounds.center()]) {
                 let height = height_at(&triangles, corner.truncate()).unwrap();
-                assert!(height <= bounds.min.z - BELOW_M + 1e-4, "{height} above {}", bounds.min.z);
-                assert!(height > bounds.min.z - 4.0, "{height} far below {}", bounds.min.z);
+                assert!(height < bounds.min.z, "{height} above {}", bounds.min.z);
+                assert!(height > bounds.min.z - 2.0 * BELOW_M, "{height} far below {}", bounds.min.z);
             }
         }
     }
@@ -429,8 +462,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_terrain_get_none() {
+    fn nothing_gets_none() {
         assert_eq!(plain_ground(&CityModel::default(), &[]), None);
-        assert_eq!(plain_ground(&terrain(4), &[0]), None);
     }
 }

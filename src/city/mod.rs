@@ -15,6 +15,7 @@ pub mod load;
 mod memory;
 pub mod model;
 pub mod obj;
+pub mod place;
 pub mod shown;
 pub mod spatial;
 mod strings;

@@ -64,6 +64,21 @@ pub const MESH: &str = "Mesh";
 /// No surface, material, texture, parent, ...
 pub const NONE: u32 = u32::MAX;
 
+/// How colours of materials are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Materials {
+    /// As files have them.
+    #[default]
+    File,
+    /// Tamed: what is vivid is quieter, and never dark.
+    Tamed,
+}
+
+impl Materials {
+    /// The words of scene files.
+    pub const WORDS: [(&'static str, Self); 2] = [("tamed", Self::Tamed), ("file", Self::File)];
+}
+
 /// A whole city: everything that was read from all files, in reading order.
 #[derive(Clone, Debug, Default)]
 pub struct CityModel {
@@ -91,6 +106,8 @@ pub struct CityModel {
     pub details: Vec<SurfaceDetail>,
     /// Materials, from all files.
     pub materials: Vec<Material>,
+    /// How their colours are shown.
+    pub shown_materials: Materials,
     /// Textures, from all files.
     pub textures: Vec<Texture>,
     /// Tiles, grouped by geometry.

@@ -13,10 +13,8 @@ use crate::{
         arguments::GlobalArguments,
         failure::{Failure, Outcome},
         output,
-        render::{
-            self,
-            arguments::{MAX_SAMPLES, Size},
-        },
+        quality::Smoothness,
+        render::{self, arguments::Size},
         terminal,
     },
     figure::{
@@ -32,7 +30,7 @@ use crate::{
 const EXAMPLES: &str = "\
 Examples:
   veduta animate scene.toml -o frames
-  veduta animate scene.toml -o frames --size 1920x1080 --samples 16
+  veduta animate scene.toml -o frames --size 1920x1080 --quality draft
   veduta animate scene.toml -o frames --frames 0..49      frames 0 to 49, both included
   veduta animate scene.toml -o frames --set animation.fps=60
   veduta animate scene.toml -o frames --stats walk.jsonl  what each frame cost and did, a line of JSON each
@@ -58,9 +56,9 @@ pub struct Arguments {
     /// Width and height in pixels [default: the scene's, else 1280x720]
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Samples per pixel [default: the scene's, else 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_SAMPLES))]
-    pub samples: Option<u32>,
+    /// How smooth pictures are.
+    #[command(flatten)]
+    pub smoothness: Smoothness,
     /// Write statistics: of each frame a line, the JSON object of `veduta render --stats` with its `number` and `at_s`
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
@@ -125,9 +123,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if let Some(size) = arguments.size {
         scene.figure.size = size.0;
     }
-    if let Some(samples) = arguments.samples {
-        scene.figure.samples = samples;
-    }
+    arguments.smoothness.put_into(&mut scene)?;
     let failed = |error: FilmError| Failure::failed(format!("{}: {error}", file.display()));
     let film = Film::new(&scene).map_err(failed)?;
     let all = Frames { first: None, last: None };
@@ -157,15 +153,15 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
                 .map_err(|error| at_frame(error.to_string()))?;
             continue;
         }
-        if !is_warned && studio.is_fading() && scene.figure.samples < SMOOTH {
+        if !is_warned && studio.is_fading() && scene.figure.samples() < SMOOTH {
             is_warned = true;
             log::warn!(
                 "frame {frame}: occluders fade by a pattern of pixels, which is seen with {} per pixel; figure.samples = {SMOOTH} \
                  (--samples {SMOOTH}) smooths it",
-                if scene.figure.samples == 1 {
+                if scene.figure.samples() == 1 {
                     "1 sample".to_owned()
                 } else {
-                    format!("{} samples", scene.figure.samples)
+                    format!("{} samples", scene.figure.samples())
                 }
             );
         }
@@ -203,7 +199,7 @@ struct FrameLine<'a> {
 fn request(scene: &Scene, statistics: bool) -> Request {
     Request {
         size: scene.figure.size,
-        samples: scene.figure.samples,
+        samples: scene.figure.samples(),
         transparent: false,
         aovs: Default::default(),
         statistics,

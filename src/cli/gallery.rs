@@ -8,7 +8,9 @@ use crate::{
     cli::{
         arguments::GlobalArguments,
         failure::{Failure, Outcome},
-        output, render, sheet, terminal,
+        output,
+        quality::Smoothness,
+        render, sheet, terminal,
     },
     figure::{
         self, picture,
@@ -170,6 +172,9 @@ pub struct Arguments {
     /// The folder to write to; made where it is missing
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
+    /// How smooth pictures are.
+    #[command(flatten)]
+    pub smoothness: Smoothness,
 }
 
 /// Draws the scenes, one picture each.
@@ -187,7 +192,10 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let mut scenes = Vec::new();
     for (name, text) in SCENES.iter().filter(|(name, _)| is_asked(name)) {
         let options = Options::for_file(&images.folder.join(name));
-        scenes.extend(parsed(name, name, text, &options)?.map(|scene| (name, scene, options)));
+        if let Some(mut scene) = parsed(name, name, text, &options)? {
+            arguments.smoothness.put_into(&mut scene)?;
+            scenes.push((name, scene, options));
+        }
     }
     // Scenes of one city follow each other: it is loaded once.
     scenes.sort_by(|(_, a, _), (_, b, _)| a.city.files.cmp(&b.city.files));
@@ -204,7 +212,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         };
         let request = Request {
             size: scene.figure.size,
-            samples: scene.figure.samples,
+            samples: scene.figure.samples(),
             transparent: false,
             aovs: Default::default(),
             statistics: false,
@@ -222,6 +230,10 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     }
     for (name, text) in SHEETS.iter().filter(|(name, _)| is_asked(name)) {
         let Some(mut task) = task_of(name, text, &images)? else { continue };
+        arguments.smoothness.put_into(&mut task.scene)?;
+        if arguments.smoothness.is_told() {
+            task.sheet.samples = None;
+        }
         task.written.clone_from(&written);
         let file = folder.join(format!("{name}.png"));
         sheet::save(&file, &sheet::draw(&task, &mut last, global)?)?;

@@ -1,5 +1,6 @@
 //! `veduta info`: the first thing one runs on an unknown file.
 
+mod place;
 mod sights;
 
 use std::path::PathBuf;
@@ -25,6 +26,7 @@ use crate::{
     visibility,
 };
 
+pub use place::{Place, PlaceFacts};
 pub use sights::{LandmarkFacts, ViewFacts};
 
 const EXAMPLES: &str = "\
@@ -36,6 +38,8 @@ Examples:
                                                 the same as a scene: each in an overlay, tied to its place
   veduta info --best-views church city.city.json
                                                 from where one object is seen best, as cameras for scenes
+  veduta info --at 85010.5,447320 city.city.json
+                                                the height of ground and roof at a place, and whose it is
   veduta info --json city.glb | jq .objects.total
   zcat city.json.gz | veduta info -             from a pipe
 
@@ -60,6 +64,9 @@ pub struct Arguments {
     /// With --landmarks: also write a scene in which each of them has a best-view lens
     #[arg(long, value_name = "FILE.toml", requires = "landmarks")]
     pub scene: Option<PathBuf>,
+    /// Say what is at a place in plan: the height of the ground, what stands highest there, and how high above the ground
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub at: Option<Place>,
     /// List the N objects that stand out most: by height, footprint, isolation and what their attributes say
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub landmarks: Option<u32>,
@@ -71,6 +78,9 @@ pub struct Answer {
     /// The facts about the city.
     #[serde(flatten)]
     pub facts: Facts,
+    /// What is at the place asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<PlaceFacts>,
     /// The best views of the object asked for, best first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub best_views: Option<Vec<ViewFacts>>,
@@ -84,12 +94,13 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let (city, _) = load::load(&arguments.files, global)?;
     let best_views = arguments.best_views.as_ref().map(|id| best_views(&city, id)).transpose()?;
     let landmarks = arguments.landmarks.map(|n| landmarks(&city, n));
+    let at = arguments.at.map(|Place(at)| PlaceFacts::new(&city, at));
     if let Some(file) = &arguments.scene {
         output::check([file], arguments.files.iter().chain(&city.files_beside()))?;
         let text = sights::scene(&arguments.files, landmarks.iter().flatten(), file);
         output::write(file, |out| out.write_all(text.as_bytes()))?;
     }
-    let answer = Answer { facts: facts::facts(&city, arguments.list), best_views, landmarks };
+    let answer = Answer { facts: facts::facts(&city, arguments.list), at, best_views, landmarks };
     if arguments.json {
         return output::print(&(serde_json::to_string_pretty(&answer).map_err(Failure::failed)? + "\n"));
     }

@@ -13,6 +13,7 @@ pub mod load;
 pub mod measure;
 mod memory;
 pub mod output;
+pub mod quality;
 pub mod render;
 pub mod report;
 pub mod shader;

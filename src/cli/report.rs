@@ -14,7 +14,7 @@ use crate::{
         facts::{AttributeFacts, Extent, Facts, TreeLine},
     },
     cli::{
-        info::Answer,
+        info::{Answer, PlaceFacts},
         report::cells::{Align, Table, bytes, clean, count, cut, length, percent},
         terminal::Paint,
     },
@@ -40,6 +40,7 @@ pub fn text(answer: &Answer, sources: &[Source], paint: Paint) -> String {
     report.textures(facts);
     report.warnings(facts);
     report.list(facts);
+    answer.at.iter().for_each(|at| report.at(at));
     answer.landmarks.iter().for_each(|landmarks| report.landmarks(landmarks));
     answer.best_views.iter().for_each(|views| report.best_views(views));
     report.out
@@ -187,6 +188,23 @@ impl Report {
             ]);
         }
         self.table("Attributes", &table);
+    }
+
+    /// What is at a place.
+    fn at(&mut self, at: &PlaceFacts) {
+        self.gap();
+        let ground = match at.ground_m {
+            Some(height) if at.is_plain_ground => {
+                format!("ground at {height:.2} m (of no file: from the bases of buildings)")
+            }
+            Some(height) => format!("ground at {height:.2} m"),
+            None => "no ground".to_owned(),
+        };
+        self.line("At", &format!("{}, {}: {ground}", at.x, at.y));
+        let (Some(top), Some(object)) = (at.top_m, &at.object) else { return self.line("", "nothing stands there") };
+        let above = at.above_ground_m.map_or_else(String::new, |above| format!(", {above:.2} m above the ground"));
+        let kind = at.r#type.as_deref().unwrap_or_default();
+        self.line("", &format!("top at {top:.2} m{above}: {} ({})", clean(object), clean(kind)));
     }
 
     fn textures(&mut self, facts: &Facts) {

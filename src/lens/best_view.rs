@@ -148,12 +148,30 @@ impl MapMode {
 /// How a view looks, as far as views of one scene may differ.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Look {
+    /// What it starts from.
+    pub look: StyleLook,
     /// The colours surfaces start from.
     pub base: BaseStyle,
     /// Effects on everything outside (and under) the lenses, in order.
     pub effects: Vec<EffectUse>,
     /// What is behind the city.
     pub background: Background,
+}
+
+/// A look of a whole picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum StyleLook {
+    /// Materials under sun and sky.
+    #[default]
+    Natural,
+    /// A white model with fine lines, on white.
+    Paper,
+    /// Flat, quiet colours with cast shadows.
+    Map,
+    /// Moonlight, and the light of streets.
+    Night,
+    /// White lines on blue.
+    Blueprint,
 }
 
 /// The colours surfaces start from.
@@ -169,7 +187,7 @@ pub enum BaseStyle {
 /// What is behind the city.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Background {
-    /// A quiet sky.
+    /// What the look has there: by default a quiet sky.
     #[default]
     Sky,
     /// One colour, sRGB 0..1.

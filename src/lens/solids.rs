@@ -109,9 +109,9 @@ pub struct ShownCity<'a> {
     pub number: u64,
 }
 
-impl ShownCity<'_> {
+impl<'a> ShownCity<'a> {
     /// What finds the triangles that are shown.
-    pub fn index(&self) -> &SpatialIndex {
+    pub fn index(&self) -> &'a SpatialIndex {
         self.index.get_or_init(|| SpatialIndex::build(self.model, self.geometries))
     }
 }

@@ -56,8 +56,9 @@ impl LightByRays {
         let colors = light::uniform(
             &scene.sun,
             &LightSample::new(&scene.sun, 0, 1),
-            scene.style.background,
+            (scene.style.look, scene.style.background),
             [None; 2],
+            None,
             view.camera.eye,
             1.0,
         );

@@ -81,9 +81,9 @@ impl<'a> Cities<'a> {
         std::iter::once(self.own).chain(self.deformed(&World::OWN).map(|deformed| &deformed.city))
     }
 
-    /// The box around all of them, metres.
-    pub fn bounds(&self) -> Aabb {
-        self.all().fold(Aabb::EMPTY, |all, c| all.union(c.buffers.bounds))
+    /// The box around all of them, metres: plain ground around them too.
+    pub fn reach(&self) -> Aabb {
+        self.all().fold(Aabb::EMPTY, |all, c| all.union(c.buffers.reach))
     }
 
     /// Their uniforms `City`, for an eye; nothing where no program of the scene may show contents.
@@ -120,7 +120,9 @@ impl<'a> Cities<'a> {
         let placed = contents.iter().flat_map(|content| &content.chunks).copied().flatten();
         CityFacts {
             bounds: own.bounds,
-            all: placed.fold(self.bounds(), |all, chunk| all.union(chunk.bounds)),
+            reach: own.reach,
+            fade: own.fade,
+            all: placed.fold(self.reach(), |all, chunk| all.union(chunk.bounds)),
             moved: self.deformed(&World::OWN).map_or(Aabb::EMPTY, |deformed| deformed.city.buffers.bounds),
             chunks: chunks_of(self.own, &[]).collect(),
             cells: &own.cells,

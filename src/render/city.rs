@@ -11,7 +11,12 @@ use glam::{DVec3, IVec3, Vec3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
-    city::{CityModel, NONE, Tile, Vertex, coplanar::CoplanarTriangle, encode_normal, ground::Ground},
+    city::{
+        CityModel, NONE, Tile, Vertex,
+        coplanar::CoplanarTriangle,
+        encode_normal,
+        ground::{Fade, Ground},
+    },
     geom::{Aabb, plane::Plane},
     gpu::{Gpu, GpuError},
     render::{
@@ -45,6 +50,8 @@ pub struct Chunk {
     pub details: u8,
     /// Which of its fragments are translucent, whatever lenses do.
     pub translucency: Translucency,
+    /// Whether it is plain ground around the city: so far off that nothing throws shadows there.
+    pub is_around: bool,
 }
 
 impl Chunk {
@@ -181,8 +188,12 @@ pub struct CityBuffers {
     pub vertices: u64,
     /// Bytes on the GPU.
     pub bytes: u64,
-    /// Box around everything drawn.
+    /// Box around everything drawn but plain ground around the city, metres.
     pub bounds: Aabb,
+    /// Box around that too, metres.
+    pub reach: Aabb,
+    /// How its plain ground fades, where there is one.
+    pub fade: Option<Fade>,
 }
 
 /// What is drawn of a model.
@@ -238,6 +249,7 @@ struct Run {
     bounds: Aabb,
     cell: u32,
     details: u8,
+    is_around: bool,
 }
 
 /// How corners become vertices.
@@ -264,8 +276,15 @@ impl Gathered {
     fn close_run(&mut self, bounds: Aabb, cell: u32, details: u8) {
         let end = self.weld.indices.len();
         if end > self.runs.last().map_or(0, |run| run.end) {
-            self.runs.push(Run { end, bounds, cell, details });
+            self.runs.push(Run { end, bounds, cell, details, is_around: false });
         }
+    }
+
+    /// A run of plain ground.
+    fn close_ground(&mut self, bounds: Aabb, is_around: bool) {
+        let before = self.runs.len();
+        self.close_run(bounds, NO_CELL, details_of(NO_CELL, Detail::Full));
+        self.runs[before..].iter_mut().for_each(|run| run.is_around = is_around);
     }
 
     /// Cuts the runs into chunks: where another cell begins, and where one has more than a chunk; a run longer than that is cut by triangles.
@@ -275,24 +294,26 @@ impl Gathered {
             IVec3::from(vertex.origin).as_dvec3() + Vec3::from(vertex.position).as_dvec3()
         };
         let step = CHUNK_TRIANGLES * 3;
-        let chunk = |(from, to): (usize, usize), bounds: Aabb, (cell, details): (u32, u8)| Chunk {
+        let chunk = |(from, to): (usize, usize), bounds: Aabb, (cell, details, is_around): (u32, u8, bool)| Chunk {
             range: from as u32..to as u32,
             bounds,
             cell,
             details,
             translucency: self.group.translucency,
+            is_around,
         };
         let mut chunks: Vec<Chunk> = Vec::new();
-        let (mut start, mut bounds, mut done, mut of) = (0, Aabb::EMPTY, 0, (NO_CELL, 0));
+        let (mut start, mut bounds, mut done, mut of) = (0, Aabb::EMPTY, 0, (NO_CELL, 0, false));
         for run in &self.runs {
             let is_long = run.end - done > 2 * step;
             // Terrain is cut as soon as there is a chunk of it; cells are about that long.
             let is_full = done - start >= if of.0 == NO_CELL { step } else { 2 * step };
-            if done > start && (is_long || is_full || (run.cell, run.details) != of) {
+            let of_run = (run.cell, run.details, run.is_around);
+            if done > start && (is_long || is_full || of_run != of) {
                 chunks.push(chunk((start, done), bounds, of));
                 (start, bounds) = (done, Aabb::EMPTY);
             }
-            of = (run.cell, run.details);
+            of = of_run;
             if is_long {
                 for from in (done..run.end).step_by(step) {
                     let to = (from + step).min(run.end);
@@ -338,6 +359,9 @@ impl CityBuffers {
             objects.for_each(|object| *shells.entry(object).or_default() |= layout::SURFACE_LIT_AS_BEFORE);
         }
         let mut table = SurfaceTable::new(shown.model, &textures, &shells);
+        if shown.ground.is_some() {
+            table.ground = surfaces::ground_color(shown, &textures);
+        }
         let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
         let smooth = is_smooth(shown, &apart) || has_normals(shown, &textures);
         let kind = WeldKind { smooth, provoking: provoking_corner(gpu) };
@@ -355,7 +379,8 @@ impl CityBuffers {
         let mut sections = Vec::new();
         let mut bounds = extent;
         if let Some(ground) = shown.ground {
-            bounds = bounds.union(gather_ground(ground, &mut table, &mut plain[0]));
+            gather_ground(ground, &mut table, &mut plain[0]);
+            bounds = bounds.union(ground.bounds_below());
         }
         let (mut triangles, mut vertices) = (0, 0);
         let mut push = |section: Option<(Section, usize, usize)>| {
@@ -418,6 +443,8 @@ impl CityBuffers {
             vertices,
             bytes,
             bounds,
+            reach: shown.ground.map_or(bounds, |ground| bounds.union(ground.bounds)),
+            fade: shown.ground.map(|ground| ground.fade),
         })
     }
 
@@ -438,6 +465,8 @@ impl CityBuffers {
             vertices: 0,
             bytes: 0,
             bounds,
+            reach: bounds,
+            fade: None,
         }
     }
 
@@ -556,10 +585,9 @@ fn textured_corners(
     })
 }
 
-fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered) -> Aabb {
-    let mut all = Aabb::EMPTY;
+fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered) {
     let up = encode_normal(DVec3::Z);
-    for tile in &ground.tiles {
+    for (number, tile) in ground.tiles.iter().enumerate() {
         table.begin_tile();
         plain.weld.begin_tile(tile.origin);
         let vertices = &ground.vertices[tile.vertices.start as usize..tile.vertices.end as usize];
@@ -569,10 +597,8 @@ fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered
             plain.weld.triangle(table.number(NONE, up, false), corners.map(|position| Corner { position, normal: up }));
         }
         plain.weld.end_tile();
-        plain.close_run(tile.bounds, NO_CELL, details_of(NO_CELL, Detail::Full));
-        all = all.union(tile.bounds);
+        plain.close_ground(tile.bounds, !ground.below.contains(&number));
     }
-    all
 }
 
 /// Block models by cell, of each first what looks up, and what the table of surfaces says of them.

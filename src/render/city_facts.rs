@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::{
+    city::ground::Fade,
     geom::Aabb,
     render::{
         cells::{CellFigures, Detail, Details, triangles_in},
@@ -44,6 +45,9 @@ pub(super) struct CityFacts<'a> {
     /// Box around the scene's own, and around all of them, metres.
     pub bounds: Aabb,
     pub all: Aabb,
+    /// Box around the scene's own and the plain ground around it, metres, and how that fades, where there is one.
+    pub reach: Aabb,
+    pub fade: Option<Fade>,
     /// Box around what deformations move, metres.
     pub moved: Aabb,
     /// Of the scene's own: chunks by section, cells, whether it has block models, whether its edges are there.
@@ -117,7 +121,7 @@ impl CityFacts<'_> {
     ) -> Option<SunEye> {
         let frustum = view.frustum(1.0);
         let chunks = self.chunks.iter().copied().flatten();
-        let is_seen = |c: &&Chunk| c.details & Detail::Full.bit() != 0 && frustum.meets(&c.bounds);
+        let is_seen = |c: &&Chunk| !c.is_around && c.details & Detail::Full.bit() != 0 && frustum.meets(&c.bounds);
         let mut seen: Vec<Aabb> = chunks.filter(is_seen).map(|c| c.bounds).collect();
         let (of_contents, all) = contents(&frustum);
         seen.extend(of_contents);
@@ -133,7 +137,7 @@ impl CityFacts<'_> {
             let uses = input.operations.contents.iter().filter(|c| c.city == content.number);
             let reaches = uses.flat_map(|c| reaches_of(Some(c.lens), c.class, input.volumes, &input.view));
             let room = reaches.fold(Aabb::EMPTY, |all, reach| all.union(reach.bounds()));
-            for chunk in content.chunks.iter().copied().flatten() {
+            for chunk in content.chunks.iter().copied().flatten().filter(|chunk| !chunk.is_around) {
                 let bounds = chunk.bounds;
                 let part = Aabb { min: bounds.min.max(room.min), max: bounds.max.min(room.max) };
                 if part.is_empty() {

@@ -9,7 +9,7 @@ use crate::{
         eye::PictureTile, furniture::Furniture, moved::Moved, operations::Operations, solids::SolidTable,
         volume::LensVolume,
     },
-    scene::{Background, BaseStyle, Sun, Technique, Transparency},
+    scene::{Background, BaseStyle, StyleLook, Sun, Technique, Transparency},
     view::View,
 };
 
@@ -24,6 +24,8 @@ pub struct FrameInput<'a> {
     pub sun: Sun,
     /// Colours to start from.
     pub base: BaseStyle,
+    /// Whose light it has.
+    pub look: StyleLook,
     /// What is behind the city.
     pub background: Background,
     /// How lenses are evaluated.

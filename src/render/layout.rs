@@ -225,7 +225,7 @@ pub struct Light {
     pub sky: [f32; 3],
     pub shadow_levels: f32,
     pub ground: [f32; 3],
-    pub reserved_1: f32,
+    pub fade_width: f32,
     pub sun_from_relative: [[f32; 4]; 4],
     pub zenith: [f32; 3],
     pub reserved_2: u32,
@@ -238,6 +238,7 @@ pub struct Light {
     pub sky_weight: f32,
     pub sky_spread: f32,
     pub sky_from_relative: [[f32; 4]; 4],
+    pub fade: [f32; 4],
 }
 
 /// `pass/sprite.wgsl`.
@@ -560,7 +561,7 @@ mod tests {
                     sky,
                     shadow_levels,
                     ground,
-                    reserved_1,
+                    fade_width,
                     sun_from_relative,
                     zenith,
                     reserved_2,
@@ -572,7 +573,8 @@ mod tests {
                     sky_levels,
                     sky_weight,
                     sky_spread,
-                    sky_from_relative
+                    sky_from_relative,
+                    fade
                 }),
             ),
             (&Module::Sprite, host!(SpriteStage { region, pixels_per_texel, origin, clip_scale, clip_shift, leaves })),

@@ -5,9 +5,10 @@ use std::f64::consts::TAU;
 use glam::{DMat4, DVec2, DVec3};
 
 use crate::{
+    city::ground::Fade,
     geom::Aabb,
     render::{layout, palette, sun_eye::SunEye},
-    scene::{Background, Sun},
+    scene::{Background, SkyLight, StyleLook, Sun},
 };
 
 /// Texels along a side of the shadow map, unless [`crate::render::settings::Settings`] say otherwise.
@@ -186,24 +187,27 @@ impl MapReading {
     }
 }
 
-/// The light block; `maps`: the eyes of sun and sky where there is a map of what they see.
+/// The light block; `maps`: the eyes of sun and sky where there is a map of what they see; `fade`: that of the plain ground.
 pub fn uniform(
     sun: &Sun,
     light: &LightSample,
-    background: Background,
+    (look, background): (StyleLook, Background),
     maps: [Option<&SunEye>; 2],
+    fade: Option<&Fade>,
     eye: DVec3,
     scene_radius: f64,
 ) -> layout::Light {
+    let SkyLight { sun: direct, sky, ground, zenith, horizon } = *look.light();
     // Below the horizon only a blue dusk is left.
     let day = ((sun.elevation.to_degrees() + 4.0) / 10.0).clamp(0.0, 1.0) as f32;
     // Low sun is warm.
     let warmth = (1.0 - (sun.elevation.to_degrees() / 25.0).clamp(0.0, 1.0)) as f32;
-    let sun_color = [0.86, 0.86 * (0.95 - 0.22 * warmth), 0.86 * (0.86 - 0.42 * warmth)].map(|c: f32| c * day);
+    let warm = [1.0, 1.0 - 0.232 * warmth, 1.0 - 0.488 * warmth];
+    let sun_color: [f32; 3] = std::array::from_fn(|c| direct[c] * warm[c] * day);
     let ambient = 0.25 + 0.75 * day;
     let zenith = match background {
         Background::Color(srgb) => palette::linear(srgb),
-        Background::Sky => palette::linear([0.57, 0.70, 0.84]).map(|c| c * ambient),
+        Background::Sky => palette::linear(zenith).map(|c| c * ambient),
     };
     let [shadow, of_sky] = maps.map(|map| MapReading::of(map, eye));
     layout::Light {
@@ -211,14 +215,14 @@ pub fn uniform(
         shadow_scale: shadow.scale,
         sun: sun_color,
         shadow_depth_step: shadow.depth_step,
-        sky: [0.335, 0.375, 0.43].map(|c| c * ambient),
+        sky: sky.map(|c| c * ambient),
         shadow_levels: shadow.levels,
-        ground: [0.20, 0.185, 0.165].map(|c| c * ambient),
-        reserved_1: 0.0,
+        ground: ground.map(|c| c * ambient),
+        fade_width: fade.map_or(1.0, |fade| fade.width) as f32,
         sun_from_relative: shadow.across.as_mat4().to_cols_array_2d(),
         zenith,
         reserved_2: 0,
-        horizon: palette::linear([0.90, 0.925, 0.94]).map(|c| c * ambient),
+        horizon: palette::linear(horizon).map(|c| c * ambient),
         scene_radius: scene_radius as f32,
         to_sky: light.sky.map_or(DVec3::Z, |sky| sky.to).as_vec3().to_array(),
         sky_scale: of_sky.scale,
@@ -227,6 +231,10 @@ pub fn uniform(
         sky_weight: light.sky.map_or(1.0, |sky| sky.weight) as f32,
         sky_spread: light.sky.map_or(0.0, |sky| sky.spread) as f32,
         sky_from_relative: of_sky.across.as_mat4().to_cols_array_2d(),
+        fade: fade.map_or([0.0; 4], |fade| {
+            let middle = (fade.middle - eye.truncate()).as_vec2();
+            [middle.x, middle.y, fade.half.x as f32, fade.half.y as f32]
+        }),
     }
 }
 

@@ -19,7 +19,7 @@ const NOTHING_TRANSLUCENT: &str = "// Nothing is translucent.\n";
 impl Renderer {
     /// The text of a module as it runs where the lenses are in the picture; without lenses in view everywhere.
     pub fn shader(&self, input: &FrameInput, lenses: &[Lens], part: ShaderPart) -> String {
-        let bounds = self.cities().map_or(Aabb::EMPTY, |cities| cities.bounds());
+        let bounds = self.cities().map_or(Aabb::EMPTY, |cities| cities.reach());
         let seen = seen_volumes(input, &bounds, SpriteRoom::default(), &[]).volumes;
         let facts = self.cities().map(|cities| cities.facts());
         let clear_materials = facts.as_ref().is_some_and(|facts| facts.has_clear_materials());

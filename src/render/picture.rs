@@ -17,6 +17,7 @@ use crate::{
         derived::{Derive, Form, derive},
         ground::{Ground, plain_ground},
         load::LoadOptions,
+        place::Places,
         shown::shown_geometries,
         spatial::SpatialIndex,
     },
@@ -187,7 +188,7 @@ pub struct Studio {
     /// Its geometries that are shown.
     pub geometries: Vec<u32>,
     /// The plain ground under it.
-    pub ground: Option<Ground>,
+    pub ground: Option<Arc<Ground>>,
     /// Objects with something to show.
     pub objects: u64,
     /// How long loading took, filled by whoever loaded.
@@ -222,14 +223,14 @@ impl Studio {
             })?),
         };
         let geometries = shown_geometries(&model, cap);
-        let ground = spec.ground.then(|| plain_ground(&model, &geometries)).flatten();
+        let ground = spec.ground.then(|| plain_ground(&model, &geometries)).flatten().map(Arc::new);
         let coplanar = coplanar_triangles(&model, &geometries);
         let mut renderer = Renderer::new(gpu)?;
         let shown = Shown {
             model: &model,
             geometries: &geometries,
             coplanar: &coplanar,
-            ground: ground.as_ref(),
+            ground: ground.as_deref(),
             is_lit_as_before: false,
         };
         renderer.set_city(&shown, None)?;
@@ -268,6 +269,19 @@ impl Studio {
     /// Finds out where the triangles are that are shown.
     pub fn find_triangles(&self) {
         self.shown().index();
+    }
+
+    /// What is at places of it.
+    pub fn places(&self) -> Places<'_> {
+        Places { model: &self.model, index: self.shown().index(), ground: self.ground.as_deref() }
+    }
+
+    /// The building that the eye of a scene is in, where its camera is given.
+    pub fn building_around(&self, scene: &Scene) -> Option<u32> {
+        let eye = scene.camera?.eye;
+        let is_near = |g: &u32| self.model.geometries[*g as usize].bounds.distance_to(eye) == 0.0;
+        // The index takes a moment to make: only where there may be an answer.
+        self.geometries.iter().any(|g| is_near(g)).then(|| self.places().building_around(eye)).flatten()
     }
 
     /// Box around the shown city, without the plain ground; empty for an empty city.
@@ -403,11 +417,11 @@ impl Studio {
     /// Puts contents of lenses on the GPU, and edges the first time that something draws lines.
     fn find_cities(&mut self, resolved: &Resolved) -> Result<(), RenderError> {
         let edges = resolved.operations.draws_lines();
-        self.renderer.set_contents(&resolved.contents.wanted, self.ground.as_ref(), edges)?;
+        self.renderer.set_contents(&resolved.contents.wanted, self.ground.as_deref(), edges)?;
         if self.renderer.has_edges() || !edges {
             return Ok(());
         }
-        let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_ref());
+        let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_deref());
         Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false })?)
     }
 
@@ -424,7 +438,7 @@ impl Studio {
             model: &self.model,
             geometries: &self.geometries,
             coplanar: &coplanar,
-            ground: self.ground.as_ref(),
+            ground: self.ground.as_deref(),
             is_lit_as_before: false,
         };
         self.renderer.set_city(&shown, Some(&blocks.model))?;
@@ -720,6 +734,7 @@ fn input<'a>(scene: &Scene, request: &Request, resolved: &'a Resolved, tile: Pic
         tile,
         sun: scene.sun,
         base: scene.style.base,
+        look: scene.style.look,
         background: scene.style.background,
         technique: scene.style.technique,
         transparency: scene.style.transparency,

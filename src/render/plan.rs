@@ -4,6 +4,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
+    city::ground::Fade,
     render::{
         bake::{self, BakeRequest},
         cells::Details,
@@ -81,6 +82,8 @@ pub(super) struct FramePlan<'a> {
     pub own_sections: Vec<SectionFacts>,
     /// Half the diagonal of the city in plan, metres.
     pub radius: f64,
+    /// How the plain ground fades, where there is one.
+    pub fade: Option<Fade>,
     /// The volumes of lenses that the picture may show, and their numbers.
     pub seen: Seen,
     pub numbers: LensNumbers,
@@ -178,6 +181,7 @@ impl<'a> FramePlan<'a> {
             sections: facts.sections.clone(),
             own_sections: facts.own_sections.clone(),
             radius: light::radius_of(&facts.bounds),
+            fade: facts.fade,
             numbers: LensNumbers::new(input, &seen.volumes, &requests, own_sprites),
             parts: PictureParts::new(&seen.volumes, &plans.filters, input.tile.size),
             light,

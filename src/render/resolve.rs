@@ -91,6 +91,11 @@ impl Surroundings<'_> {
         self.facts.as_ref().map_or(Aabb::EMPTY, |facts| facts.bounds)
     }
 
+    /// The same with the plain ground around it, metres.
+    fn reach(&self) -> Aabb {
+        self.facts.as_ref().map_or(Aabb::EMPTY, |facts| facts.reach)
+    }
+
     /// What a scene is in a picture of this size and so many samples, seen by `camera`.
     pub fn resolve(
         &self,
@@ -111,14 +116,14 @@ impl Surroundings<'_> {
         regions::set_tests(technique, &mut found.volumes);
         known.solid_table = found.place_solids(&known.solid_table).map_err(ResolveError::Scene)?;
         let LensVolumes { mut volumes, tests } = found;
-        let view = View::new(*camera, size, &self.bounds())?;
+        let view = View::new(*camera, size, &self.reach())?;
         let contents = self.contents(drawn, &eye, &view, samples, &volumes, known)?;
         contents.add_to_members(&mut volumes, self.city, &deformations.moved);
         let sights = self.sights(scene, &eye, &deformations.moved, known);
         let mut operations = self.operations(scene, &volumes, tests, &contents, sights)?;
         add_members(&mut operations, &mut volumes, &self.models(&contents));
         check_counts(&operations, &volumes)?;
-        let (own, moved) = (self.bounds(), &deformations.moved);
+        let (own, moved) = (self.reach(), &deformations.moved);
         let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved));
         let view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();

@@ -3,13 +3,14 @@
 //! It is a texture, [`ROW`] surfaces per row, one texel each: software adapters gather texels of many pixels at once,
 //! but walk through a storage buffer pixel by pixel.
 
+use glam::Vec3;
 use rustc_hash::FxHashMap;
 
 use crate::{
-    city::{CityModel, Material, NONE, ObjectClass, StringId, Surface, TexelOpacity, decode_normal},
+    city::{CityModel, Material, Materials, NONE, ObjectClass, StringId, Surface, TexelOpacity, decode_normal},
     gpu::{Gpu, GpuError},
     render::{
-        city::{Group, Images, Texels, Translucency},
+        city::{Group, Images, Shown, Texels, Translucency},
         layout, palette,
         shells::Shells,
         textures::Textures,
@@ -29,6 +30,8 @@ pub struct SurfaceTable<'a> {
     shells: &'a Shells,
     /// Whether opacity of materials does not count.
     pub is_opaque: bool,
+    /// Colour of the plain ground, linear light.
+    pub ground: [f32; 3],
     /// The entries, by number.
     pub entries: Vec<layout::Surface>,
     numbers: FxHashMap<(u32, u32, bool), u32>,
@@ -37,7 +40,8 @@ pub struct SurfaceTable<'a> {
 impl<'a> SurfaceTable<'a> {
     /// An empty table.
     pub fn new(model: &'a CityModel, textures: &'a Textures, shells: &'a Shells) -> Self {
-        Self { model, textures, shells, is_opaque: false, entries: Vec::new(), numbers: FxHashMap::default() }
+        let ground = palette::linear_bytes(palette::PLAIN_GROUND);
+        Self { model, textures, shells, is_opaque: false, ground, entries: Vec::new(), numbers: FxHashMap::default() }
     }
 
     /// Numbers given so far are not given again: surfaces of another tile are others.
@@ -48,9 +52,12 @@ impl<'a> SurfaceTable<'a> {
     /// The number of a model surface (`NONE`: the plain ground) that faces a packed normal; `has_texcoords`: whether it can show a
     /// texture.
     pub fn number(&mut self, surface: u32, normal: u32, has_texcoords: bool) -> u32 {
-        let Self { model, textures, shells, is_opaque, entries, numbers } = self;
+        let Self { model, textures, shells, is_opaque, ground, entries, numbers } = self;
         *numbers.entry((surface, normal, has_texcoords)).or_insert_with(|| {
-            let found = entry(model, textures, shells, surface, normal);
+            let found = match surface {
+                NONE => plain_ground(*ground, normal),
+                surface => entry(model, textures, shells, surface, normal),
+            };
             let number = entries.len() as u32;
             entries.push(if *is_opaque { found.opaque() } else { found });
             entries.extend(emission(model, textures, surface).map(|light| light.entry(has_texcoords)));
@@ -128,6 +135,39 @@ pub fn upload(gpu: &Gpu, entries: &[layout::Surface]) -> Result<wgpu::TextureVie
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
 
+/// What the table says of the plain ground in a colour, that faces a packed normal: lit as level ground, on slopes too.
+fn plain_ground(color: [f32; 3], normal: u32) -> layout::Surface {
+    let flags = layout::PART_TERRAIN << layout::SURFACE_PART_SHIFT | layout::SURFACE_LIT_AS_BEFORE;
+    layout::Surface::new(layout::NO_OBJECT, normal, color, flags)
+}
+
+/// The colour of the plain ground beside what is shown, linear light: halfway to the mean of terrain and land, where they have colours.
+pub(super) fn ground_color(shown: &Shown, textures: &Textures) -> [f32; 3] {
+    let plain = palette::linear_bytes(palette::PLAIN_GROUND);
+    let model = shown.model;
+    let (mut sum, mut area) = ([0.0_f64; 3], 0.0);
+    let geometries = shown.geometries.iter().map(|&g| &model.geometries[g as usize]);
+    let is_land = |class| matches!(class, ObjectClass::Terrain | ObjectClass::Land);
+    let land = geometries.filter(|g| is_land(model.objects[g.object as usize].class));
+    for tile in land.flat_map(|g| &model.tiles[g.tiles.start as usize..g.tiles.end as usize]) {
+        let indices = &model.indices[tile.indices.start as usize..tile.indices.end as usize];
+        for corners in indices.chunks_exact(3) {
+            let [a, b, c] = [0, 1, 2].map(|k| &model.vertices[(tile.vertices.start + corners[k]) as usize]);
+            let surface = &model.surfaces[a.surface as usize];
+            let has_texture = |m: &Material| textures.has(m.texture);
+            if tile.texcoords != NONE && model.materials.get(surface.material as usize).is_some_and(has_texture) {
+                continue;
+            }
+            let [p, q, r] = [a, b, c].map(|vertex| Vec3::from(vertex.position).truncate());
+            let weight = f64::from((q - p).perp_dot(r - p).abs());
+            let color = natural_color(model, textures, surface, a.normal);
+            (0..3).for_each(|i| sum[i] += weight * f64::from(color[i]));
+            area += weight;
+        }
+    }
+    if area > 0.0 { std::array::from_fn(|i| 0.5 * (plain[i] + (sum[i] / area) as f32)) } else { plain }
+}
+
 /// What the table says of a model surface (`NONE`: the plain ground) that faces a packed normal.
 pub(super) fn entry(
     model: &CityModel,
@@ -137,27 +177,34 @@ pub(super) fn entry(
     normal: u32,
 ) -> layout::Surface {
     let Some(found) = model.surfaces.get(surface as usize) else {
-        return layout::Surface::new(
-            layout::NO_OBJECT,
-            normal,
-            palette::linear_bytes(palette::PLAIN_GROUND),
-            // As level ground, on slopes too.
-            layout::PART_TERRAIN << layout::SURFACE_PART_SHIFT | layout::SURFACE_LIT_AS_BEFORE,
-        );
+        return plain_ground(palette::linear_bytes(palette::PLAIN_GROUND), normal);
     };
     let material = model.materials.get(found.material as usize);
-    let color = match material {
-        // A texture brings the colour; the material's own only tints it.
-        Some(m) if m.texture == NONE || textures.has(m.texture) => [m.base_color[0], m.base_color[1], m.base_color[2]],
-        // A declared texture that is missing: most files say plain white beside it, so the quiet colours are better.
-        _ => palette::linear_bytes(palette::natural(model, found)),
-    };
+    let color = natural_color(model, textures, found, normal);
     let unlit = if material.is_some_and(|m| m.unlit) { layout::SURFACE_UNLIT } else { 0 };
     let part = part_of(model, found, normal) << layout::SURFACE_PART_SHIFT;
     let shell = shells.get(&found.object).copied().unwrap_or_default();
     let opacity = material.map_or(1.0, |m| m.base_color[3]);
     let emits = if emission(model, textures, surface).is_some() { layout::SURFACE_EMITS } else { 0 };
     layout::Surface::new(found.object, normal, color, unlit | part | shell | emits | layout::clear_bits(opacity))
+}
+
+/// The colour of a model surface that faces a packed normal, linear light; where it has a texture, that of the material.
+fn natural_color(model: &CityModel, textures: &Textures, surface: &Surface, normal: u32) -> [f32; 3] {
+    let is_tamed = |m: &Material| model.shown_materials == Materials::Tamed && m.texture == NONE && !m.unlit;
+    match model.materials.get(surface.material as usize) {
+        // A texture brings the colour; the material's own only tints it.
+        Some(m) if m.texture == NONE || textures.has(m.texture) => {
+            let own = [m.base_color[0], m.base_color[1], m.base_color[2]];
+            if is_tamed(m) { palette::tamed(own) } else { own }
+        }
+        // A declared texture that is missing: most files say plain white beside it, so the quiet colours are better.
+        _ => {
+            let part = part_of(model, surface, normal);
+            let is = [layout::PART_ROOF, layout::PART_WALL].map(|of| part == of);
+            palette::linear_bytes(palette::natural(model, surface, decode_normal(normal).z, is))
+        }
+    }
 }
 
 /// What a surface is part of: by its semantics; where a building has none, by which way it faces.

@@ -229,7 +229,7 @@ mod tests {
         let mut history = History::default();
         assert!(history.apply(Command::of("nothing", &Scene::default(), |_| ())));
         assert_eq!(history.undo(), None);
-        let other = Command::of("x", &Scene::default(), |s| s.figure.samples = 4).after;
+        let other = Command::of("x", &Scene::default(), |s| s.figure.samples = Some(4)).after;
         assert!(!history.apply(resized(&other, 3)));
     }
 

@@ -1,11 +1,12 @@
 //! The lenses that a picture is made with: an occlusion lens that draws its occluders in several ways, or what they hide, stands for
-//! several lenses with one way each. What moves stands still in it.
+//! several lenses with one way each. What moves stands still in it, and the look of its style is effects.
 
 use std::borrow::Cow;
 
 use crate::{
     lens::{
         Class, Lens, LensBody, Region, Rendering,
+        best_view::StyleLook,
         chosen::Choice,
         rendering::{Case, When},
     },
@@ -40,8 +41,8 @@ impl Scene {
     pub fn drawn(&self) -> Drawn<'_> {
         let is_plain = |lens: &Lens| lens.rendering().is_none_or(Rendering::is_plain);
         if self.lenses.iter().all(is_plain) {
-            let scene = match self.moves() {
-                true => Cow::Owned(Self { pois: self.standing_pois(), ..self.clone() }),
+            let scene = match self.moves() || self.style.look != StyleLook::default() {
+                true => Cow::Owned(Self { pois: self.standing_pois(), style: self.style.drawn(), ..self.clone() }),
                 false => Cow::Borrowed(self),
             };
             return Drawn { scene, owners: None, wholes: Vec::new() };
@@ -63,7 +64,7 @@ impl Scene {
             owners.resize(lenses.len(), owner);
         }
         Drawn {
-            scene: Cow::Owned(Self { lenses, pois: self.standing_pois(), ..self.clone() }),
+            scene: Cow::Owned(Self { lenses, pois: self.standing_pois(), style: self.style.drawn(), ..self.clone() }),
             owners: Some(owners),
             wholes,
         }

@@ -7,6 +7,7 @@ pub mod animation;
 pub mod check;
 pub mod command;
 pub mod drawn;
+pub mod look;
 pub mod model;
 pub mod overlay;
 mod sized;
@@ -14,13 +15,15 @@ pub mod technique;
 pub mod trajectory;
 pub mod transparency;
 
-pub use crate::lens::best_view::{Background, BaseStyle};
+pub use crate::lens::best_view::{Background, BaseStyle, StyleLook};
 pub use animation::Animation;
 pub use check::{SceneProblem, check_against};
 pub use command::{Command, History};
 pub use drawn::Drawn;
+pub use look::SkyLight;
 pub use model::{
-    CHORD_PX, CitySpec, Corner, DEFAULT_DPI, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun, TextSize,
+    CHORD_PX, CitySpec, Corner, DEFAULT_DPI, DEFAULT_SAMPLES, Figure, LegendPlace, Poi, PoiPlace, Scene, Style, Sun,
+    TextSize,
 };
 pub use overlay::{Layout, Overlay};
 pub use technique::Technique;

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use crate::{
-    city::load::Up,
+    city::{Materials, load::Up},
     lens::{
         EffectUse, Lens,
-        best_view::{Background, BaseStyle},
+        best_view::{Background, BaseStyle, StyleLook},
     },
     scene::{
         animation::Animation,
@@ -58,13 +58,15 @@ pub struct CitySpec {
     pub lod: Option<String>,
     /// What is up in OBJ files, which do not say so.
     pub up: Up,
+    /// How colours of materials are shown.
+    pub materials: Materials,
     /// Whether a plain ground is put under a city without terrain.
     pub ground: bool,
 }
 
 impl Default for CitySpec {
     fn default() -> Self {
-        Self { files: Vec::new(), lod: None, up: Up::default(), ground: true }
+        Self { files: Vec::new(), lod: None, up: Up::default(), materials: Materials::Tamed, ground: true }
     }
 }
 
@@ -99,11 +101,13 @@ impl Default for Sun {
 /// How the context looks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Style {
+    /// What it starts from.
+    pub look: StyleLook,
     /// The colours surfaces start from.
     pub base: BaseStyle,
     /// Effects on everything outside (and under) the lenses, in order.
     pub effects: Vec<EffectUse>,
-    /// What is behind the city.
+    /// What is behind the city; [`Background::Sky`]: what the look has there.
     pub background: Background,
     /// How lenses that meet are evaluated; the picture is the same.
     pub technique: Technique,
@@ -119,6 +123,7 @@ pub const CHORD_PX: f64 = 0.25;
 impl Default for Style {
     fn default() -> Self {
         Self {
+            look: StyleLook::default(),
             base: BaseStyle::default(),
             effects: Vec::new(),
             background: Background::default(),
@@ -154,8 +159,8 @@ pub enum PoiPlace {
 pub struct Figure {
     /// Width and height, pixels, 1..=16384.
     pub size: [u32; 2],
-    /// Samples per pixel, 1..=1024.
-    pub samples: u32,
+    /// Samples per pixel, 1..=1024; `None`: [`DEFAULT_SAMPLES`].
+    pub samples: Option<u32>,
     /// Where legends of thematic colours stand.
     pub legend: LegendPlace,
     /// A title, at the top left.
@@ -197,7 +202,15 @@ impl TextSize {
     }
 }
 
+/// Samples per pixel where a figure says nothing: edges are smooth, and shadows soft.
+pub const DEFAULT_SAMPLES: u32 = 16;
+
 impl Figure {
+    /// Samples per pixel.
+    pub fn samples(&self) -> u32 {
+        self.samples.unwrap_or(DEFAULT_SAMPLES)
+    }
+
     /// The size of the text, pixels, where the scene gives it.
     pub fn text_px(&self) -> Option<f64> {
         self.text.map(|size| size.px(self.dpi.unwrap_or(DEFAULT_DPI)))
@@ -208,7 +221,7 @@ impl Default for Figure {
     fn default() -> Self {
         Self {
             size: [1280, 720],
-            samples: 1,
+            samples: None,
             legend: LegendPlace::default(),
             title: None,
             caption: None,

@@ -28,6 +28,7 @@ impl Scene {
         scene.layout.gap_px *= factor;
         scene.figure.text = Some(TextSize::Pixels(em_px * factor));
         scene.style.chord_px *= factor;
+        scene.style = scene.style.drawn();
         scene.style.effects.iter_mut().for_each(|used| size_effect(used, factor));
         scene.lenses.iter_mut().for_each(|lens| size_lens(lens, factor));
         scene

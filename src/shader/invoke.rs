@@ -71,6 +71,7 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
             (true, EffectKind::Material) => format!("contained_material({call})"),
             (true, _) => format!("contained({call})"),
         };
+        let call = if handler.kind == EffectKind::Scene { format!("before_sky({call}, point)") } else { call };
         let _ = writeln!(text, "        case {number}u: {{ above = {as_is}({call}); }}");
     }
     text.push_str("        default: {}\n    }\n");
@@ -178,6 +179,7 @@ pub(super) fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     if let Some(air) = own(EffectKind::Air, Mode::Global).filter(|_| uber.haze) {
         let _ = writeln!(text, "    color = {}(color, *point);", air.wgsl_name());
     }
+    text.push_str("    color = before_sky(color, *point);\n");
     text.push_str("    return styled(color, *point, classes);\n}\n\n");
     text
 }

@@ -106,6 +106,9 @@ impl Writer<'_> {
             let contained = if is_material { "contained_material" } else { "contained" };
             call = format!("{contained}({call})");
         }
+        if handler.kind == EffectKind::Scene {
+            call = format!("before_sky({call}, {point})");
+        }
         let as_is = as_is(handler.kind);
         call = format!("{as_is}({call})");
         let Some((blend, weight)) = step.blend.zip(step.weight(handler)) else { return call };
@@ -198,6 +201,7 @@ impl Writer<'_> {
             if let Some(air) = own(EffectKind::Air, Mode::Global).filter(|_| self.plan.haze) {
                 let _ = writeln!(text, "    color = {}(color, *point);", air.wgsl_name());
             }
+            text.push_str("    color = before_sky(color, *point);\n");
         }
         let _ = writeln!(text, "    return styled{suffix}(color, *point, classes);\n}}\n");
         text

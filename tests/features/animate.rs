@@ -55,7 +55,7 @@ fn scene() -> Scene {
 }
 
 fn run(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_veduta"));
+    let mut command = crate::program();
     command.args(arguments).env_remove("VEDUTA_DATA").stdin(Stdio::null()).output().unwrap()
 }
 
@@ -195,7 +195,7 @@ fn a_frame_with_a_history_does_not_depend_on_which_frames_are_drawn() {
             let scene = film.scene(*frame).unwrap();
             let request = Request {
                 size: scene.figure.size,
-                samples: scene.figure.samples,
+                samples: scene.figure.samples(),
                 transparent: false,
                 aovs: Default::default(),
                 statistics: false,

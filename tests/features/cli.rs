@@ -9,7 +9,7 @@ use std::{
 use serde_json::{Value, json};
 
 fn veduta(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_veduta"));
+    let mut command = crate::program();
     command.args(arguments).env_remove("NO_COLOR").env_remove("VEDUTA_DATA").stdin(Stdio::null());
     command
 }
@@ -141,7 +141,7 @@ fn without_a_display_the_window_says_what_makes_a_picture() {
 }
 
 fn without_display(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_veduta"));
+    let mut command = crate::program();
     command.args(arguments).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").output().unwrap()
 }
 

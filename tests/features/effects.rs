@@ -573,7 +573,7 @@ impl Drop for Folder {
 
 /// Exit code, stdout and stderr.
 fn veduta(arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_veduta")).args(arguments).output().unwrap();
+    let output = crate::program().args(arguments).output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     (output.status.code().expect("the program was killed"), text(output.stdout), text(output.stderr))
 }

@@ -21,7 +21,7 @@ fn folder(name: &str) -> Folder {
 }
 
 fn run(output: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_veduta"));
+    let mut command = crate::program();
     command.current_dir(env!("CARGO_MANIFEST_DIR")).args(["measure", "gpu", "-o", output.to_str().unwrap()]);
     command.args(arguments).env_remove("VEDUTA_DATA").stdin(Stdio::null()).output().unwrap()
 }

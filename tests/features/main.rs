@@ -60,3 +60,11 @@ mod techniques;
 mod transparency;
 mod warnings;
 mod wrong_input;
+
+/// The program, which draws one sample per pixel where neither a scene nor the command line says how many: few of these tests are about
+/// how smooth pictures are.
+fn program() -> std::process::Command {
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_veduta"));
+    command.env("VEDUTA_QUALITY", "draft");
+    command
+}

@@ -44,7 +44,7 @@ impl Folder {
     }
 
     fn run(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_veduta"));
+        let mut command = crate::program();
         command.args(arguments).current_dir(&self.0).stdin(Stdio::null()).env_remove("VEDUTA_DATA");
         command.output().expect("the program")
     }
@@ -140,7 +140,7 @@ fn no_result_replaces_what_is_read() {
 #[test]
 fn a_result_that_nobody_takes_is_no_success() {
     let folder = Folder::new("pipe");
-    let mut child = Command::new(env!("CARGO_BIN_EXE_veduta"))
+    let mut child = crate::program()
         .args(["render", "scene.toml", "-o", "-", "--size", "64x40", "--samples", "1"])
         .current_dir(&folder.0)
         .stdout(Stdio::piped())
@@ -161,7 +161,7 @@ fn parts(folder: &Path) -> usize {
 /// A program that writes a file, and is in the middle of it.
 #[cfg(unix)]
 fn writing(folder: &Path) -> std::process::Child {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_veduta"))
+    let mut child = crate::program()
         .args(["synth", "--buildings", "2000000", "--seed", "1", "-o", "large.city.json"])
         .current_dir(folder)
         .stderr(Stdio::null())

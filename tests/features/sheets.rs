@@ -68,7 +68,7 @@ caption = "The caption."
 "##;
 
 fn run(arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_veduta"));
+    let mut command = crate::program();
     command.args(arguments).env_remove("VEDUTA_DATA").stdin(Stdio::null()).output().unwrap()
 }
 

@@ -657,7 +657,7 @@ fn render_saves_sprites_that_scenes_use() {
     std::fs::write(folder.file("first.toml"), first).expect("a scene");
     std::fs::write(folder.file("second.toml"), second).expect("a scene");
     let run = |scene: &str, more: &[&str]| {
-        let output = std::process::Command::new(env!("CARGO_BIN_EXE_veduta"))
+        let output = crate::program()
             .current_dir(&folder.0)
             .args(["render", scene, "--size", "96x64", "-o"])
             .arg(format!("{scene}.png"))

@@ -368,7 +368,7 @@ fn render_tells_of_too_few_layers() {
     );
     let file = |name: &str| folder.join(name);
     std::fs::write(file("s.toml"), scene).expect("a scene file");
-    let output = std::process::Command::new(env!("CARGO_BIN_EXE_veduta"))
+    let output = crate::program()
         .arg("render")
         .arg(file("s.toml"))
         .args(["--size", "64x48", "--samples", "2", "-o"])

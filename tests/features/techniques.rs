@@ -401,7 +401,7 @@ fn the_line_that_refuses_names_the_file_and_the_key() {
         lens.repeat(7)
     );
     std::fs::write(&file, text).expect("a scene file");
-    let run = std::process::Command::new(env!("CARGO_BIN_EXE_veduta"))
+    let run = crate::program()
         .args(["render", "-q"])
         .arg(&file)
         .arg("-o")

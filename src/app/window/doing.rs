@@ -99,6 +99,11 @@ impl Window {
                     self.document.edit("switch lens", |scene| scene.lenses[index].enabled ^= true);
                 }
             }
+            Action::GoHome => {
+                if let (Some(camera), Some(home)) = (self.camera(), self.canvas.home) {
+                    self.canvas.fly(camera, home);
+                }
+            }
             Action::FrameAll => {
                 let extent = self.city.as_ref().map_or(Aabb::EMPTY, |city| city.extent);
                 self.frame_box(&extent);

@@ -199,6 +199,7 @@ impl Target {
             strings,
             objects,
             materials: source.materials.clone(),
+            shown_materials: source.shown_materials,
             textures: source.textures.clone(),
             ..CityModel::default()
         };

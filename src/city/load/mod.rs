@@ -54,6 +54,7 @@ pub fn load_with_stats(
     progress.enter(Stage::Build, paths.len(), paths.len(), Path::new(""));
     let start = Instant::now();
     let mut model = builder.finish();
+    model.shown_materials = options.materials;
     texture::settle(&mut model);
     tell_degrees(&mut model, paths);
     stats.build = start.elapsed();

@@ -9,6 +9,8 @@ use std::{
 
 use glam::DVec3;
 
+use crate::city::model::Materials;
+
 /// Names of the files of a folder by their lower-case spelling; of several the first by name.
 type Listing = Arc<HashMap<String, OsString>>;
 
@@ -57,6 +59,8 @@ pub struct LoadOptions {
     pub roots: Vec<PathBuf>,
     /// What is up in OBJ files.
     pub up: Up,
+    /// How colours of materials are shown.
+    pub materials: Materials,
     /// Folders in which files were looked for by other spellings.
     pub listings: Listings,
 }

@@ -8,6 +8,7 @@ use crate::{
     cli::{
         failure::{Failure, Outcome},
         output,
+        quality::Smoothness,
         render::sprites::SpriteRequest,
     },
     render::frame::Backend,
@@ -16,7 +17,7 @@ use crate::{
 const EXAMPLES: &str = "\
 Examples:
   veduta render city.city.json -o city.png
-  veduta render tiles/*.city.jsonl -o city.png --size 1920x1080 --samples 16
+  veduta render tiles/*.city.jsonl -o city.png --size 1920x1080 --quality draft
   veduta render scene.toml -o figure.png --set lens.0.shape.radius=80 --set lens.b.enabled=false
   veduta render scene.toml -o figure.png --sprite hall=hall.exr
   veduta render scene.toml -o beyond.png --through gate      what is seen after stepping through a portal
@@ -28,9 +29,6 @@ includes image-space lenses. The same input on the same adapter gives the same b
 
 /// Pixels on a side at most.
 const MAX_SIDE: u32 = 16_384;
-/// Samples per pixel at most.
-pub const MAX_SAMPLES: i64 = 1024;
-
 /// Arguments of `veduta render`.
 #[derive(Args, Clone, Debug, Default)]
 #[command(after_help = EXAMPLES)]
@@ -44,9 +42,9 @@ pub struct Arguments {
     /// Width and height in pixels [default: the scene's, else 1280x720]
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
-    /// Samples per pixel [default: the scene's, else 1]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_SAMPLES))]
-    pub samples: Option<u32>,
+    /// How smooth pictures are.
+    #[command(flatten)]
+    pub smoothness: Smoothness,
     /// Change the scene: lens.0.shape.radius=80, lens.NAME.enabled=false; repeatable, in order
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub settings: Vec<String>,

@@ -44,9 +44,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if let Some(size) = arguments.size {
         scene.figure.size = size.0;
     }
-    if let Some(samples) = arguments.samples {
-        scene.figure.samples = samples;
-    }
+    arguments.smoothness.put_into(&mut scene)?;
     let written: Vec<PathBuf> = arguments.outputs().cloned().collect();
     output::keep(&written, &scene_file::files_of(&scene))?;
     check_masks(&arguments.aovs, &scene)?;
@@ -59,10 +57,16 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         let from = studio.camera(&scene, scene.figure.size);
         portal(&scene, name, from)?.redo(&mut scene);
     }
+    if let Some(object) = studio.building_around(&scene) {
+        log::warn!(
+            "the eye is in building \"{}\": what is seen are its walls from inside",
+            studio.model.objects[object as usize].id
+        );
+    }
     let has = |kind| arguments.aovs.iter().any(|aov| aov.kind == kind);
     let request = Request {
         size: scene.figure.size,
-        samples: scene.figure.samples,
+        samples: scene.figure.samples(),
         transparent: arguments.transparent,
         aovs: Aovs {
             depth: has(AovKind::Depth),
@@ -192,8 +196,13 @@ pub fn open(
     }
     let mut roots: Vec<PathBuf> = options.roots.clone();
     roots.push(options.base.clone());
-    let reading =
-        LoadOptions { allow_outside: global.allow_outside, roots, up: scene.city.up, ..LoadOptions::default() };
+    let reading = LoadOptions {
+        allow_outside: global.allow_outside,
+        roots,
+        up: scene.city.up,
+        materials: scene.city.materials,
+        ..LoadOptions::default()
+    };
     let (model, load) = load::load_with(&scene.city.files, &reading, global)?;
     output::keep(outputs, &model.files_beside())?;
     let mut warnings: Vec<serde_json::Value> =

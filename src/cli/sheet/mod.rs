@@ -11,7 +11,9 @@ use crate::{
     cli::{
         arguments::GlobalArguments,
         failure::{Failure, Outcome},
-        output, render, terminal,
+        output,
+        quality::Smoothness,
+        render, terminal,
     },
     figure::{
         self,
@@ -54,6 +56,9 @@ pub struct Arguments {
     /// Write the figures of all cells as JSON
     #[arg(long = "figures", value_name = "FILE.json")]
     pub figures: Option<PathBuf>,
+    /// How smooth pictures are.
+    #[command(flatten)]
+    pub smoothness: Smoothness,
     /// Change the scene before the sheet does; repeatable, in order
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub settings: Vec<String>,
@@ -102,7 +107,12 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let options = render::options_of(Some(&file), global);
     let scene =
         scene_file::read(&file, &options).map_err(|error| Failure::failed(format!("{name}: scene: {error}")))?;
-    let scene = render::changed(scene, &arguments.settings)?;
+    let mut scene = render::changed(scene, &arguments.settings)?;
+    let mut sheet = sheet;
+    if arguments.smoothness.is_told() {
+        sheet.samples = None;
+    }
+    arguments.smoothness.put_into(&mut scene)?;
     let mut task = Task { name, sheet, scene, options: options.clone(), written: Vec::new() };
     let cells = cell_files(arguments, &cells_of(&task)?)?;
     task.written = outputs().chain(&cells).cloned().collect();
@@ -255,7 +265,7 @@ fn studio_of<'k>(
 fn request(scene: &Scene) -> Request {
     Request {
         size: scene.figure.size,
-        samples: scene.figure.samples,
+        samples: scene.figure.samples(),
         transparent: false,
         aovs: Default::default(),
         statistics: false,

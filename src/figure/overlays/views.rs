@@ -170,7 +170,7 @@ fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
     }
     if let Some(look) = &shown.look {
         let (base, effects, background) = (look.base, look.effects.clone(), look.background);
-        own.style = Style { base, effects, background, ..own.style };
+        own.style = Style { look: look.look, base, effects, background, ..own.style };
     }
     own
 }

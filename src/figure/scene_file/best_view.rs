@@ -18,6 +18,7 @@ use crate::{
         LensKind,
         best_view::{
             Background, BaseStyle, BestView, DEFAULT_FOV, Depiction, LocalView, Look, MOST_MAGNIFIED, MapMode,
+            StyleLook,
         },
         nearest::did_you_mean,
     },
@@ -269,6 +270,18 @@ pub const LOOK: Table =
 const LOOK_ROWS: &[Row<Look>] = &[
     field!(
         key(
+            "look",
+            Kind::Word { now: &["natural", "paper", "map", "night", "blueprint"], later: &[] },
+            "\"natural\"",
+            "",
+            "As `look` of `[style]`.",
+            "\"paper\"",
+        ),
+        Word,
+        |look: Look| look.look
+    ),
+    field!(
+        key(
             "base",
             Kind::Word { now: &["natural", "clay"], later: &[] },
             "\"natural\"",
@@ -425,7 +438,8 @@ fn depiction(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<De
 }
 
 /// A look of which nothing is said.
-const PLAIN_LOOK: Look = Look { base: BaseStyle::Natural, effects: Vec::new(), background: Background::Sky };
+const PLAIN_LOOK: Look =
+    Look { look: StyleLook::Natural, base: BaseStyle::Natural, effects: Vec::new(), background: Background::Sky };
 
 /// `poi` of a lens with an overlay.
 pub fn pois(shown: &BestView) -> Option<Data> {

@@ -53,7 +53,26 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
         |city: CitySpec| city.up
     ),
     field!(
-        key("ground", Kind::Boolean, "true", "", "Puts a plain ground under a city without terrain.", "false"),
+        key(
+            "materials",
+            Kind::Word { now: &["tamed", "file"], later: &[] },
+            "\"tamed\"",
+            "",
+            "Colours of materials: `tamed`, vivid ones quieter and never dark, or as the `file` has them. Textures stay as they are.",
+            "\"file\"",
+        ),
+        Word,
+        |city: CitySpec| city.materials
+    ),
+    field!(
+        key(
+            "ground",
+            Kind::Boolean,
+            "true",
+            "",
+            "Puts a plain ground under the city, which fills gaps of its terrain and goes on around it until it fades.",
+            "false",
+        ),
         Same,
         |city: CitySpec| city.ground
     ),

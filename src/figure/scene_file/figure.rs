@@ -27,10 +27,10 @@ pub const FIGURE_ROWS: &[Row<Figure>] = &[
         key(
             "samples",
             Kind::Integer { min: 1, max: 1024 },
-            "1",
-            "per pixel",
-            "Samples that are averaged: 1 is fast, 16 is smooth.",
             "16",
+            "per pixel",
+            "Samples that are averaged: 1 is a quick draft with jagged edges and hard shadows, 16 is smooth.",
+            "64",
         ),
         Same,
         |figure: Figure| figure.samples

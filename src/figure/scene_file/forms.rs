@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use crate::{
-    city::load::Up,
+    city::{Materials, load::Up},
     figure::scene_file::node::{Data, Node},
     lens::{
         BorderUnit, Class, Discrete, LensBody, Parameter,
@@ -13,7 +13,7 @@ use crate::{
         sprite::{Format, Mapping},
     },
     scene::{
-        Background, BaseStyle, LegendPlace, Technique,
+        Background, BaseStyle, LegendPlace, StyleLook, Technique,
         animation::Numbers,
         overlay::{Along, BuiltInFrame, LineEnd, LineKind, Outside, Sizes},
     },
@@ -233,6 +233,7 @@ macro_rules! words {
 }
 
 words! {
+    StyleLook: Self::WORDS;
     BaseStyle: [("natural", Self::Natural), ("clay", Self::Clay)];
     LensBody: Self::WORDS;
     Class: [("inside", Self::Inside), ("front", Self::Front), ("behind", Self::Behind), ("rest", Self::Rest)];
@@ -243,6 +244,7 @@ words! {
     MapMode: Self::WORDS;
     Along: Self::WORDS;
     Up: Self::WORDS;
+    Materials: Self::WORDS;
     Sizes: Self::WORDS;
     BuiltInFrame: Self::WORDS;
     LineKind: Self::WORDS;

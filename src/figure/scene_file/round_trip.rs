@@ -18,8 +18,8 @@ use crate::{
         sprite::{Format, Mapping},
     },
     scene::{
-        Animation, Background, BaseStyle, Corner, Figure, Layout, LegendPlace, Overlay, Poi, PoiPlace, Style, Sun,
-        Technique, TextSize, Transparency,
+        Animation, Background, BaseStyle, Corner, Figure, Layout, LegendPlace, Overlay, Poi, PoiPlace, Style,
+        StyleLook, Sun, Technique, TextSize, Transparency,
         animation::{Change, ChangeKey, Numbers},
         overlay::{Along, BuiltInFrame, CallOut, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes, Stand},
         trajectory::{Pace as WayPace, Trajectory},
@@ -432,7 +432,7 @@ prop_compose! {
         let background = background.map_or(Background::Sky, Background::Color);
         let effects = if used.effect == "sepia" { vec![EffectUse { class: Class::Inside, ..used }] } else { vec![] };
         let base = if base { BaseStyle::Clay } else { BaseStyle::Natural };
-        let (mut look, mut lenses) = (has_look.then_some(Look { base, effects, background }), lenses.map(|all| all.iter().map(|n| format!("{n}\\ü")).collect()));
+        let (mut look, mut lenses) = (has_look.then_some(Look { look: StyleLook::WORDS[effects.len() % 5].1, base, effects, background }), lenses.map(|all| all.iter().map(|n| format!("{n}\\ü")).collect()));
         if kind == "annotation" {
             (look, lenses) = (None, None);
         }
@@ -602,10 +602,10 @@ prop_compose! {
             layout: layout.unwrap_or_default(),
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
             sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2, ..Sun::default() },
-            style: Style { base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency, chord_px },
+            style: Style { look: StyleLook::WORDS[sun.0.unsigned_abs() as usize % 5].1, base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency, chord_px },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).chain(moving).collect(),
             lenses,
-            figure: Figure { size, samples, ..figure },
+            figure: Figure { size, samples: Some(samples), ..figure },
             animation,
             ..Scene::default()
         };

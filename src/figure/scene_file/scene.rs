@@ -181,7 +181,7 @@ const SECTIONS: &[Section] = &[
         key: key(
             "figure",
             Kind::Table(&FIGURE),
-            "1280x720, 1 sample",
+            "1280x720, 16 samples",
             "",
             "How a picture is made.",
             "{ size = [1920, 1080] }",

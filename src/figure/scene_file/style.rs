@@ -19,6 +19,18 @@ pub const STYLE: Table =
 pub const STYLE_ROWS: &[Row<Style>] = &[
     field!(
         key(
+            "look",
+            Kind::Word { now: &["natural", "paper", "map", "night", "blueprint"], later: &[] },
+            "\"natural\"",
+            "",
+            "The look of the whole picture: materials under sun and sky (`natural`), a white model with fine lines on white (`paper`), flat quiet colours with cast shadows (`map`), moonlight (`night`), white lines on blue (`blueprint`). `base`, `effects` and `background` change it: a scene style among the effects stands in place of the look's.",
+            "\"paper\"",
+        ),
+        Word,
+        |style: Style| style.look
+    ),
+    field!(
+        key(
             "base",
             Kind::Word { now: &["natural", "clay"], later: &[] },
             "\"natural\"",
@@ -40,7 +52,7 @@ pub const STYLE_ROWS: &[Row<Style>] = &[
             Kind::Background,
             "\"sky\"",
             "",
-            "What is behind the city: a quiet sky, or one colour.",
+            "What is behind the city: what the look has there (`sky`), or one colour.",
             "\"#ffffff\"",
         ),
         Behind,

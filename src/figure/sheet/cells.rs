@@ -61,9 +61,7 @@ pub fn cells(sheet: &Sheet, base: &Scene, name: &str, options: &Options) -> Resu
         if !is_right {
             continue;
         }
-        if let Some(samples) = sheet.samples {
-            scene.figure.samples = samples;
-        }
+        scene.figure.samples = sheet.samples.or(scene.figure.samples);
         scene.figure.legend = LegendPlace::None;
         (scene.figure.title, scene.figure.caption, scene.animation) = (None, None, None);
         let poi = match sheet.figures.contains(&CellFigure::VisibleShare).then(|| poi_of(sheet, &scene)) {
@@ -179,7 +177,7 @@ cell = [{ row = "r", column = "d", caption = "C", set = ["lens.a.shape.radius=4"
         assert_eq!(all[1].caption.as_deref(), Some("C"));
         for cell in &all {
             let figure = &cell.scene.figure;
-            assert_eq!((figure.samples, &figure.title, figure.legend), (9, &None, LegendPlace::None));
+            assert_eq!((figure.samples, &figure.title, figure.legend), (Some(9), &None, LegendPlace::None));
             assert_eq!((&cell.scene.animation, &cell.poi), (&None, &None));
         }
         assert_eq!(made("").unwrap()[0].name, "1");

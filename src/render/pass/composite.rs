@@ -6,6 +6,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         eye::PictureTile,
+        frame::Behind,
         pass::{
             context::FrameContext,
             layering::{self, Layering, common},
@@ -61,6 +62,9 @@ pub struct CompositeKey {
     /// There is a shadow map, and one of the sky.
     pub shadows: bool,
     pub sky: bool,
+    /// There is a plain ground, which fades; what is behind it.
+    pub fades: bool,
+    pub behind: Behind,
     /// Normals are in the lists.
     pub smooth: bool,
     /// Which layer is the shown surface is written down.
@@ -87,6 +91,8 @@ impl CompositeKey {
             clay: plan.is_clay(),
             shadows: plan.sun.is_some(),
             sky: plan.sky.is_some(),
+            fades: plan.fade.is_some(),
+            behind: plan.input.behind(),
             smooth: plan.smooth,
             shown: plan.input.wants_shown_layers(),
             sorted: false,
@@ -112,6 +118,7 @@ impl PipelineKey for CompositeKey {
             (self.clay, "clay"),
             (self.shadows, "shadows"),
             (self.sky, "sky"),
+            (self.fades, "plain ground"),
             (self.smooth, "smooth"),
             (self.shown, "shown"),
         ];
@@ -135,6 +142,8 @@ impl PipelineKey for CompositeKey {
                 ("CLAY", flag(self.clay)),
                 ("SHADOWS", flag(self.shadows)),
                 ("SKY_SHADOWS", flag(self.sky)),
+                ("GROUND_FADES", flag(self.fades)),
+                ("BACKGROUND", f64::from(self.behind as u32)),
                 ("SMOOTH", flag(self.smooth)),
             ],
             stage: Stage::Draw(Draw {

@@ -86,6 +86,8 @@ pub struct ShadeKey {
     texels_emit: bool,
     /// Some of what is shown are sections.
     sections: bool,
+    /// There is a plain ground, which fades.
+    fades: bool,
     /// What is behind the city.
     behind: Behind,
 }
@@ -105,6 +107,7 @@ impl ShadeKey {
             emits: plan.emits,
             texels_emit: plan.texels_emit,
             sections: plan.has_sections,
+            fades: plan.fade.is_some(),
             behind: plan.input.behind(),
         }
     }
@@ -139,6 +142,7 @@ impl PipelineKey for ShadeKey {
             (self.emits, "emission"),
             (self.texels_emit, "of texels"),
             (self.sections, "sections"),
+            (self.fades, "plain ground"),
         ];
         format!("{}{}", Module::Shade(self.program.clone()).name(), words(&list))
     }
@@ -169,6 +173,7 @@ impl PipelineKey for ShadeKey {
                 ("EMITS", flag(self.emits)),
                 ("TEXELS_EMIT", flag(self.texels_emit)),
                 ("SECTIONS", flag(self.sections)),
+                ("GROUND_FADES", flag(self.fades)),
                 ("BACKGROUND", f64::from(self.behind as u32)),
             ],
             stage: Stage::Draw(Draw {

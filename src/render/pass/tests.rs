@@ -113,6 +113,7 @@ impl Asked {
             tile: PictureTile::whole([64, 48]),
             sun: self.sun,
             base: BaseStyle::default(),
+            look: crate::scene::StyleLook::default(),
             background: Background::Sky,
             technique: self.technique,
             transparency: self.transparency,
@@ -133,10 +134,13 @@ impl Asked {
             furniture: &self.furniture,
             most_triangles: None,
         };
-        let chunks = [Chunk { range: 0..36, bounds, cell: 0, details: 1, translucency: Translucency::None }];
+        let chunks =
+            [Chunk { range: 0..36, bounds, cell: 0, details: 1, translucency: Translucency::None, is_around: false }];
         let sections = vec![SectionFacts { kind: SectionKind::Plain, is_smooth: false, is_read: false }];
         let facts = CityFacts {
             bounds,
+            reach: bounds,
+            fade: None,
             all: bounds,
             moved: Aabb::EMPTY,
             chunks: vec![&chunks],

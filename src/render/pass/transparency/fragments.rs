@@ -5,6 +5,7 @@ use wgpu::ShaderStages as S;
 
 use crate::{
     render::{
+        frame::Behind,
         pass::{
             layering::{self, LayerPrograms},
             opaque::in_order,
@@ -146,6 +147,9 @@ struct Shading {
     /// There is a shadow map, and one of the sky.
     shadows: bool,
     sky: bool,
+    /// There is a plain ground, which fades; what is behind it.
+    fades: bool,
+    behind: Behind,
     /// Of the picture: the context's, or the lenses'.
     part: u32,
     /// Base colours have a target.
@@ -163,6 +167,8 @@ impl Shading {
             // Mesa 22.3 crashes where fragments of the city sample the shadow map.
             shadows: plan.sun.is_some() && !plan.adapter.is_software,
             sky: plan.sky.is_some() && !plan.adapter.is_software,
+            fades: plan.fade.is_some(),
+            behind: plan.input.behind(),
             part: u32::from(plan.has_lenses()),
             colored: plan.colored,
             measured: plan.input.measured,
@@ -252,6 +258,8 @@ impl FragmentKey {
                 ("CLAY", flag(own.clay)),
                 ("SHADOWS", flag(own.shadows)),
                 ("SKY_SHADOWS", flag(own.sky)),
+                ("GROUND_FADES", flag(own.fades)),
+                ("BACKGROUND", f64::from(own.behind as u32)),
                 ("PART", f64::from(own.part)),
             ]);
         }
