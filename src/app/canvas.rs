@@ -181,7 +181,7 @@ impl Window {
         let points = rect.size();
         // A figure's pixels are its own; the window's are points, however many pixels these have.
         let meant_for = match self.previews {
-            true => self.document.scene().figure.size,
+            true => self.document.scene().figure.pixels(),
             false => [points.x, points.y].map(|side| side.round().max(1.0) as u32),
         };
         self.want(size, meant_for, is_moving);
@@ -189,7 +189,7 @@ impl Window {
 
     /// The part of the window that has the shape of the figure.
     fn figure_part(&self, rect: Rect) -> Rect {
-        let [w, h] = self.document.scene().figure.size.map(|side| side as f32);
+        let [w, h] = self.document.scene().figure.pixels().map(|side| side as f32);
         let scale = (rect.width() / w).min(rect.height() / h);
         Rect::from_center_size(rect.center(), vec2(w, h) * scale)
     }

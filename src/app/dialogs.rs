@@ -44,7 +44,7 @@ pub fn show(window: &mut Window, context: &Context) {
 /// A line about the figure that will be written.
 fn figure_note(window: &Window, dialog: &FileDialog) -> Option<String> {
     let figure = &window.document.scene().figure;
-    let [w, h] = figure.size;
+    let [w, h] = figure.pixels();
     let samples = figure.samples();
     (dialog.wanted == Wanted::Write(Writing::Figure)).then(|| {
         format!(
@@ -75,7 +75,7 @@ fn body(dialog: &mut FileDialog, note: Option<&str>, ui: &mut Ui) -> End {
         ui,
         |ui| {
             if dialog.entries.is_empty() {
-                match dialog.ending() {
+                match dialog.endings().first() {
                     Some(ending) => ui.weak(format!("No .{ending} file is here yet.")),
                     None => ui.weak("Nothing here that can be opened."),
                 };
@@ -159,10 +159,11 @@ fn finished(dialog: &mut FileDialog) -> End {
         }
         _ => {}
     }
-    if let (Some(ending), Some(file)) = (dialog.ending(), meant.first()) {
-        let is_right = file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending));
-        if !is_right {
-            dialog.problem = Some(format!("{}: the name must end in .{ending}.", file.display()));
+    if let (false, Some(file)) = (dialog.reads(), meant.first()) {
+        let endings = dialog.endings();
+        let is_right = |ending: &&str| file.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending));
+        if !endings.iter().any(is_right) {
+            dialog.problem = Some(format!("{}: the name must end in .{}.", file.display(), endings.join(" or .")));
             return End::Goes;
         }
     }

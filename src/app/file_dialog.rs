@@ -113,11 +113,12 @@ impl FileDialog {
         Self::new(Wanted::Write(Writing::Figure), folder, "figure.png")
     }
 
-    pub(super) fn ending(&self) -> Option<&'static str> {
+    /// How names of files that are written end, the usual one first; none: files are read.
+    pub(super) fn endings(&self) -> &'static [&'static str] {
         match self.wanted {
-            Wanted::Read | Wanted::Add => None,
-            Wanted::Write(Writing::Scene) => Some("toml"),
-            Wanted::Write(Writing::Figure) => Some("png"),
+            Wanted::Read | Wanted::Add => &[],
+            Wanted::Write(Writing::Scene) => &["toml"],
+            Wanted::Write(Writing::Figure) => &["png", "pdf", "svg"],
         }
     }
 
@@ -125,10 +126,10 @@ impl FileDialog {
         let folder = std::path::absolute(&folder).unwrap_or(folder);
         match std::fs::read_dir(&folder) {
             Ok(entries) => {
-                let ending = self.ending();
+                let endings = if self.reads() { READABLE } else { self.endings() };
                 let is_meant = |path: &Path| {
                     let own = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-                    ending.map_or_else(|| READABLE.contains(&&*own), |ending| ending == own)
+                    endings.contains(&&*own)
                 };
                 let is_hidden =
                     |path: &Path| path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
@@ -156,7 +157,7 @@ impl FileDialog {
             return vec![typed.into()];
         }
         let mut path = self.folder.join(typed);
-        if let (Some(ending), None) = (self.ending(), path.extension()) {
+        if let (Some(ending), None) = (self.endings().first(), path.extension()) {
             path.set_extension(ending);
         }
         vec![path]

@@ -6,7 +6,7 @@ use crate::{
     app::{document::Document, finder::text_of, new_lens::quoted, state::Window},
     city::{Attribute, CityModel},
     lens::{Lens, Region, chosen::Choice},
-    scene::LegendPlace,
+    scene::PiecePlace,
 };
 
 /// Lenses that hide: the names are the window's own.
@@ -246,8 +246,8 @@ fn colors(window: &mut Window, ui: &mut Ui, names: &[String]) {
             };
             done.map(|()| {
                 let mut after = draft.scene().clone();
-                if after.figure.legend == LegendPlace::None {
-                    after.figure.legend = LegendPlace::Auto;
+                if after.figure.legend == PiecePlace::None {
+                    after.figure.legend = PiecePlace::Auto;
                 }
                 window.document.edit(format!("colour by {name}"), |scene| *scene = after);
             })

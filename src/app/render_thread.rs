@@ -33,6 +33,7 @@ use crate::{
         self,
         furniture::em_px,
         overlays::Standing,
+        paper::{self, Format},
         picture::{self, Notes},
     },
     geom::Aabb,
@@ -619,16 +620,21 @@ impl Worker {
 
     fn write(&mut self, export: &Export) {
         let Export { scene, file, notes } = export;
-        let request = Request { samples: scene.figure.samples(), ..Request::plain(scene.figure.size) };
+        let request = Request { samples: scene.figure.samples(), ..Request::plain(scene.figure.pixels()) };
+        let format = Format::of(file);
         // What is written is not interrupted by what is to be drawn next.
         let written = self.with_studio(|studio, _| {
             let interrupt = std::mem::take(&mut studio.interrupt);
-            let picture = figure::draw(studio, scene, &request);
+            let drawn = paper::draw(studio, scene, &request, *format.as_ref().unwrap_or(&Format::Png));
             studio.interrupt = interrupt;
-            picture
+            drawn
         });
-        let written = written.map_err(|error| error.to_string()).and_then(|picture| {
-            picture::save_picture(file, picture.size, &picture.rgba, true, notes).map_err(|error| error.to_string())
+        let written = written.map_err(|error| error.to_string()).and_then(|(picture, page)| {
+            let saved = match page {
+                Some(page) => page.save(file, format?, notes, scene.figure.title.as_deref()),
+                None => picture::save_picture(file, picture.size, &picture.rgba, true, notes),
+            };
+            saved.map_err(|error| error.to_string())
         });
         self.tell(match written {
             Ok(()) => Reply::Exported(file.clone()),

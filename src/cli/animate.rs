@@ -121,7 +121,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let mut scene = render::changed(scene, &arguments.settings)?;
     output::keep(&arguments.stats, &figure::scene_file::files_of(&scene))?;
     if let Some(size) = arguments.size {
-        scene.figure.size = size.0;
+        scene.figure.set_pixels(size.0);
     }
     arguments.smoothness.put_into(&mut scene)?;
     let failed = |error: FilmError| Failure::failed(format!("{}: {error}", file.display()));
@@ -147,9 +147,9 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     for frame in begin..=last {
         let scene = film.scene(frame).map_err(failed)?;
         let at_frame = |error: String| Failure::failed(format!("{}: frame {frame}: {error}", file.display()));
-        studio.pass(&scene, scene.figure.size, 1.0 / film.fps()).map_err(|error| at_frame(error.to_string()))?;
+        studio.pass(&scene, scene.figure.pixels(), 1.0 / film.fps()).map_err(|error| at_frame(error.to_string()))?;
         if frame < first {
-            figure::pass(&studio, &scene, scene.figure.size, &mut standing)
+            figure::pass(&studio, &scene, scene.figure.pixels(), &mut standing)
                 .map_err(|error| at_frame(error.to_string()))?;
             continue;
         }
@@ -198,7 +198,7 @@ struct FrameLine<'a> {
 
 fn request(scene: &Scene, statistics: bool) -> Request {
     Request {
-        size: scene.figure.size,
+        size: scene.figure.pixels(),
         samples: scene.figure.samples(),
         transparent: false,
         aovs: Default::default(),

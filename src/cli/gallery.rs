@@ -211,7 +211,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             _ => render::open(&scene, &options, &written, global)?.0,
         };
         let request = Request {
-            size: scene.figure.size,
+            size: scene.figure.pixels(),
             samples: scene.figure.samples(),
             transparent: false,
             aovs: Default::default(),

@@ -88,12 +88,12 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let options = render::options_of(file, global);
     let (mut scene, of_camera) = render::scene_of(&arguments.files, &arguments.settings, &options)?;
     if let Some(size) = arguments.size {
-        scene.figure.size = size.0;
+        scene.figure.set_pixels(size.0);
     }
     let (studio, _) = render::open(&scene, &options, &[], global)?;
     let scene = render::with_camera(scene, &of_camera, &studio)?;
     let text = studio
-        .shader(&scene, scene.figure.size, arguments.shaders.into(), arguments.module.into())
+        .shader(&scene, scene.figure.pixels(), arguments.shaders.into(), arguments.module.into())
         .map_err(Failure::failed)?;
     output::print(&text)
 }

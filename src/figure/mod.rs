@@ -5,21 +5,27 @@ pub mod file;
 pub mod furniture;
 pub mod legend;
 pub mod overlays;
+pub mod paper;
 pub mod picture;
 pub mod scene_file;
 pub mod sheet;
 pub mod ticks;
 
 use crate::{
-    figure::overlays::Standing,
+    figure::{
+        furniture::Laid,
+        overlays::{Overlays, Standing},
+    },
     render::{
+        diagnostics,
         furniture::Furniture,
         picture::{Picture, RenderError, Request, ShownOverlay, Studio},
     },
     scene::Scene,
+    view::View,
 };
 
-/// Draws a picture with its overlays, and with the title, the caption and the legends that the scene's `[figure]` asks for.
+/// Draws a picture with its overlays, and with what the scene's `[figure]` asks for: title, caption, legends, the signs of a map.
 ///
 /// # Errors
 /// Those of a picture; what an overlay shows and is not there.
@@ -47,15 +53,40 @@ pub fn draw_next(
 /// What an overlay shows and is not there.
 pub fn pass(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Standing) -> Result<(), RenderError> {
     let own = furniture_of(studio, scene, size)?;
-    overlays::pass(studio, scene, size, &furniture::cards(&own), standing)
+    overlays::pass(studio, scene, size, &own.taken, standing)
 }
 
-/// Draws a picture with its overlays, and without title, caption and legends.
+/// Draws a picture with its overlays, and without what `[figure]` asks for.
 ///
 /// # Errors
 /// As for [`draw`].
 pub fn draw_untitled(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
-    draw_with(studio, scene, request, &mut Standing::default(), Furniture::default())
+    draw_with(studio, scene, request, &mut Standing::default(), Laid::default())
+}
+
+/// A picture, and apart from it what stands over it.
+#[derive(Clone, Debug)]
+pub struct Apart {
+    /// The picture without its furniture.
+    pub picture: Picture,
+    /// What [`draw`] draws over it; its images are those that the renderer keeps until it draws something else.
+    pub furniture: Furniture,
+}
+
+/// Draws a picture without what stands over it: overlays, and what `[figure]` asks for.
+///
+/// # Errors
+/// As for [`draw`].
+pub fn draw_apart(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Apart, RenderError> {
+    let own = furniture_of(studio, scene, request.size)?;
+    let mut overlays = overlays::overlays(studio, scene, request, &own.taken, &mut Standing::default())?;
+    let furniture = over(&mut overlays, own);
+    let missing = diagnostics::without_glyph(&furniture);
+    diagnostics::boxes(&missing).iter().for_each(|(_, message)| log::warn!("{message}"));
+    let mut picture = studio.render(scene, request)?;
+    picture.without_glyph.extend(&missing);
+    tell(&mut picture, scene, request, &overlays);
+    Ok(Apart { picture, furniture })
 }
 
 fn draw_with(
@@ -63,11 +94,23 @@ fn draw_with(
     scene: &Scene,
     request: &Request,
     standing: &mut Standing,
-    own: Furniture,
+    own: Laid,
 ) -> Result<Picture, RenderError> {
-    let overlays = overlays::overlays(studio, scene, request, &furniture::cards(&own), standing)?;
-    let furniture = Furniture { pieces: overlays.furniture.pieces.into_iter().chain(own.pieces).collect() };
+    let mut overlays = overlays::overlays(studio, scene, request, &own.taken, standing)?;
+    let furniture = over(&mut overlays, own);
     let mut picture = studio.render_with(scene, request, &furniture)?;
+    tell(&mut picture, scene, request, &overlays);
+    Ok(picture)
+}
+
+/// Overlays, and over them what the figure asks for.
+fn over(overlays: &mut Overlays, own: Laid) -> Furniture {
+    let below = std::mem::take(&mut overlays.furniture.pieces);
+    Furniture { pieces: below.into_iter().chain(own.furniture.pieces).collect() }
+}
+
+/// Says in a picture what its overlays are.
+fn tell(picture: &mut Picture, scene: &Scene, request: &Request, overlays: &Overlays) {
     picture.without_glyph.extend(&overlays.without_glyph);
     picture.overlays = overlays.figures.iter().map(|own| own.shown).collect();
     if request.statistics {
@@ -83,14 +126,22 @@ fn draw_with(
         statistics.overlays = figures.collect();
         statistics.passes.splice(0..0, overlays.figures.iter().flat_map(|own| own.passes.iter().cloned()));
     }
-    Ok(picture)
 }
 
-/// The title, caption and legends of a picture of `size` pixels; nothing where the scene asks for nothing.
-pub fn furniture_of(studio: &Studio, scene: &Scene, size: [u32; 2]) -> Result<Furniture, RenderError> {
-    let legends = match scene.figure.legend.corner() {
-        Some(_) => legend::legends(scene, &studio.model, &studio.lenses_in_view(scene, size)?),
-        None => Vec::new(),
+/// The title, caption, legends and signs of a picture of `size` pixels; nothing where the scene asks for nothing.
+///
+/// # Errors
+/// Those of the camera, and of lenses that have no place.
+pub fn furniture_of(studio: &Studio, scene: &Scene, size: [u32; 2]) -> Result<Laid, RenderError> {
+    let figure = &scene.figure;
+    let places = [figure.legend, figure.scale_bar, figure.north_arrow];
+    if figure.title.is_none() && figure.caption.is_none() && !places.iter().any(|place| place.is_some()) {
+        return Ok(Laid::default());
+    }
+    let legends = match figure.legend.is_some() {
+        true => legend::legends(scene, &studio.model, &studio.lenses_in_view(scene, size)?),
+        false => Vec::new(),
     };
-    Ok(furniture::lay_out(&scene.figure, &legends, size))
+    let view = View::new(studio.camera(scene, size), size, &studio.extent())?;
+    Ok(furniture::lay_out(figure, &legends, &view, &overlays::standing(studio, scene, &view)))
 }

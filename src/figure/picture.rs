@@ -36,7 +36,7 @@ pub fn notes(scene_hash: Option<u64>) -> Notes {
 pub fn notes_of(scene: &Scene, options: &Options) -> Notes {
     let still = Scene { animation: None, ..scene.clone() };
     let hash = hash(&scene_file::to_toml_for(&still, options));
-    Notes { dpi: scene.figure.dpi, ..notes(Some(hash)) }
+    Notes { dpi: scene.figure.dpi_of_file(), ..notes(Some(hash)) }
 }
 
 /// FNV-1a of a text: names a scene; not a defence against anybody.
@@ -87,11 +87,17 @@ pub fn save_picture(
     opaque: bool,
     notes: &Notes,
 ) -> Result<(), WriteError> {
+    let bytes = png_of(size, rgba, opaque, notes).map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
+    write_whole(path, |out| out.write_all(&bytes))
+}
+
+/// The same as bytes.
+pub(in crate::figure) fn png_of(size: [u32; 2], rgba: &[[u8; 4]], opaque: bool, notes: &Notes) -> io::Result<Vec<u8>> {
     if opaque {
         let rgb: Vec<u8> = rgba.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
-        save_png(path, size, png::ColorType::Rgb, png::BitDepth::Eight, notes, &rgb)
+        png(size, png::ColorType::Rgb, png::BitDepth::Eight, notes, &rgb)
     } else {
-        save_png(path, size, png::ColorType::Rgba, png::BitDepth::Eight, notes, bytemuck::cast_slice(rgba))
+        png(size, png::ColorType::Rgba, png::BitDepth::Eight, notes, bytemuck::cast_slice(rgba))
     }
 }
 

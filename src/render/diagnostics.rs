@@ -59,13 +59,13 @@ const MOST_NAMED: usize = 5;
 pub fn without_glyph(furniture: &Furniture) -> BTreeSet<char> {
     let texts = furniture.pieces.iter().filter_map(|piece| match piece {
         Piece::Text(line) => Some(&line.text),
-        Piece::Panel(_) | Piece::Image(_) | Piece::Board(_) | Piece::Strip(_) => None,
+        Piece::Panel(_) | Piece::Image(_) | Piece::Board(_) | Piece::Strip(_) | Piece::Polygon(_) => None,
     });
     texts.flat_map(|text| cleaned(text).chars().collect::<Vec<_>>()).filter(|c| !has_glyph(*c)).collect()
 }
 
 /// How many they are, and which.
-pub(super) fn boxes(missing: &BTreeSet<char>) -> Option<(u64, String)> {
+pub fn boxes(missing: &BTreeSet<char>) -> Option<(u64, String)> {
     let named: Vec<String> =
         missing.iter().take(MOST_NAMED).map(|c| format!("{c} (U+{:04X})", u32::from(*c))).collect();
     let more =

@@ -1,6 +1,9 @@
-//! Furniture: what stands over a finished picture - panels, swatches, lines of text - as plain data, //!
+//! Furniture: what stands over a finished picture - panels, swatches, lines of text - as plain data.
+//!
 //! Whoever makes it (titles, captions, legends: [`crate::figure`]) says where everything stands in pixels of the whole
 //! picture; tiles of a large picture each take their part. Equal furniture is set once.
+
+use glam::Vec2;
 
 use crate::{lens::color::Srgb, render::text::TextLine};
 
@@ -43,6 +46,8 @@ pub enum Piece {
     Board(BoardPiece),
     /// A context line.
     Strip(Strip),
+    /// A polygon of one colour.
+    Polygon(Polygon),
 }
 
 /// An image of [`Renderer::board`](crate::render::renderer::Renderer::board) on a rectangle in the scene, in
@@ -102,6 +107,70 @@ pub struct Strip {
     pub fade: Option<([f32; 2], [f32; 2])>,
 }
 
+/// How far a mitre may reach, in half widths; sharper bends are cut there.
+const MITRE: f32 = 3.0;
+
+/// A strip across its way, at one of its points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crosscut {
+    /// The point.
+    pub at: [f32; 2],
+    /// To its left side, of length 1.
+    pub across: [f32; 2],
+    /// How far its sides are there, in half widths: 1, and more at bends, where sides meet in a mitre.
+    pub stretch: f32,
+    /// Along the way, of length 1.
+    pub ahead: [f32; 2],
+    /// Half the width there, pixels.
+    pub half_width: f32,
+    /// How far along the way it is, pixels.
+    pub along: f32,
+}
+
+impl Strip {
+    /// Its crosscuts, one for each point; none where it has no length.
+    pub fn crosscuts(&self) -> Vec<Crosscut> {
+        let points: Vec<Vec2> = self.points.iter().map(|p| Vec2::from(*p)).collect();
+        let normal = |pair: &[Vec2]| (pair[1] - pair[0]).perp().normalize_or(Vec2::Y);
+        let normals: Vec<Vec2> = points.windows(2).map(normal).collect();
+        let mut along = vec![0.0_f32];
+        for pair in points.windows(2) {
+            along.push(along[along.len() - 1] + pair[0].distance(pair[1]));
+        }
+        let length = along[along.len() - 1];
+        if normals.is_empty() || length <= 0.0 {
+            return Vec::new();
+        }
+        let ends = self.widths.map(|width| 0.5 * width);
+        let cut = |(i, point): (usize, &Vec2)| {
+            let before = normals[i.max(1) - 1];
+            let after = normals[i.min(normals.len() - 1)];
+            let middle = (before + after).normalize_or(after);
+            let stretch = (1.0 / middle.dot(after).max(1.0 / MITRE)).min(MITRE);
+            Crosscut {
+                at: (*point).into(),
+                across: middle.into(),
+                stretch,
+                ahead: (-after.perp()).into(),
+                half_width: ends[0] + (ends[1] - ends[0]) * along[i] / length,
+                along: along[i],
+            }
+        };
+        points.iter().enumerate().map(cut).collect()
+    }
+}
+
+/// A polygon of one colour: a hand of an arrow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Polygon {
+    /// Its corners, pixels from the picture's top left; what its border goes around is in it.
+    pub points: Vec<[f32; 2]>,
+    /// sRGB 0..1.
+    pub color: Srgb,
+    /// 0 to 1.
+    pub opacity: f32,
+}
+
 /// A rectangle of one colour: a card, a swatch, its shadow. On whole pixels its colour is exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Panel {
@@ -135,7 +204,7 @@ impl Furniture {
         use FurniturePart as P;
         self.pieces.iter().flat_map(|piece| match piece {
             Piece::Panel(_) => [Some(P::Items), Some(P::Solid)].into_iter().flatten(),
-            Piece::Text(_) => [Some(P::Items), None].into_iter().flatten(),
+            Piece::Text(_) | Piece::Polygon(_) => [Some(P::Items), None].into_iter().flatten(),
             Piece::Image(_) => [Some(P::Picture), Some(P::OpaquePicture)].into_iter().flatten(),
             Piece::Board(_) => [Some(P::Board), None].into_iter().flatten(),
             Piece::Strip(strip) => [Some(strip_part(strip.skin)), None].into_iter().flatten(),

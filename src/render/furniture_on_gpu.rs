@@ -17,7 +17,7 @@ use crate::{
             synced::Synced,
             vertices::per_vertex,
         },
-        text::{Run, Typesetter},
+        text::{Run, Typesetter, polygon},
     },
     shader::Module,
 };
@@ -202,6 +202,7 @@ impl FurnitureOnGpu {
             let set = |piece: &Piece| match piece {
                 Piece::Panel(_) | Piece::Image(_) | Piece::Board(_) | Piece::Strip(_) => None,
                 Piece::Text(line) => self.setter.rasterised(line, whole),
+                Piece::Polygon(polygon) => polygon::rasterised(&polygon.points, whole),
             };
             self.runs = furniture.pieces.iter().map(set).collect();
             self.of = (furniture.clone(), whole);

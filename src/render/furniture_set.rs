@@ -8,7 +8,7 @@ use crate::{
     lens::color::{Srgb, linear_from_srgb},
     render::{
         eye::PictureTile,
-        furniture::{Furniture, FurniturePart, Piece, Strip, strip_part},
+        furniture::{Crosscut, Furniture, FurniturePart, Piece, Strip, strip_part},
         layout::{FurnitureItem, StripVertex},
         patch::Patch,
         text::Run,
@@ -102,7 +102,7 @@ fn extents(
             (Patch::around(low, high), hides.then(hidden).flatten())
         }
         Piece::Board(board) => (Patch::around(inside(board.low), inside(board.high)), None),
-        Piece::Text(_) | Piece::Strip(_) => (None, None),
+        Piece::Text(_) | Piece::Strip(_) | Piece::Polygon(_) => (None, None),
     };
     let worth = |(all, hides): (_, Option<Patch>)| (all, hides.filter(|part| part.area() >= WORTHWHILE));
     furniture.pieces.iter().zip(opaque).map(of).map(worth).collect()
@@ -184,7 +184,14 @@ pub(super) fn assembled(furniture: &Furniture, runs: &[Option<Run>], opaque: &[b
                 }
                 continue;
             }
-            (Piece::Text(_), None) => continue,
+            (Piece::Polygon(polygon), Some(run)) => {
+                if let Some((item, part)) = clipped(run, tile, &mut bytes) {
+                    let item = FurnitureItem { color: with_alpha(polygon.color, polygon.opacity), ..item };
+                    all.put(FurniturePart::Items, item, [part].into_iter(), None);
+                }
+                continue;
+            }
+            (Piece::Text(_) | Piece::Polygon(_), None) => continue,
         };
         if (0..2).any(|axis| item.high[axis] <= item.low[axis]) {
             continue;
@@ -204,52 +211,39 @@ pub(super) fn assembled(furniture: &Furniture, runs: &[Option<Run>], opaque: &[b
     all
 }
 
-/// How far a mitre may reach, in half widths; sharper bends are cut there.
-const MITRE: f32 = 3.0;
-
 /// The triangles of a strip, three corners each, with a pixel around it. At bends its sides meet in a mitre.
 fn strip_corners(strip: &Strip, origin: [f32; 2]) -> Vec<StripVertex> {
-    let points: Vec<Vec2> = strip.points.iter().map(|p| Vec2::from(*p) - Vec2::from(origin)).collect();
-    let normal = |pair: &[Vec2]| (pair[1] - pair[0]).perp().normalize_or(Vec2::Y);
-    let normals: Vec<Vec2> = points.windows(2).map(normal).collect();
-    let mut along = vec![0.0_f32];
-    for pair in points.windows(2) {
-        along.push(along[along.len() - 1] + pair[0].distance(pair[1]));
-    }
-    let length = along[along.len() - 1];
-    if normals.is_empty() || length <= 0.0 {
-        return Vec::new();
-    }
+    let points = strip.points.iter().map(|p| [p[0] - origin[0], p[1] - origin[1]]).collect();
+    let cuts = Strip { points, ..strip.clone() }.crosscuts();
+    let Some(last) = cuts.last() else { return Vec::new() };
+    let length = last.along;
     let ends = strip.widths.map(|width| 0.5 * width);
     let fade = strip.fade.map_or([0.0; 4], |(at, radii)| [at[0] - origin[0], at[1] - origin[1], radii[0], radii[1]]);
     let color = with_alpha(strip.color, strip.opacity);
-    let mut sides: Vec<[StripVertex; 2]> = Vec::new();
-    for (i, point) in points.iter().enumerate() {
-        let before = normals[i.max(1) - 1];
-        let after = normals[i.min(normals.len() - 1)];
-        let middle = (before + after).normalize_or(after);
-        let stretch = (1.0 / middle.dot(after).max(1.0 / MITRE)).min(MITRE);
-        let half_width = ends[0] + (ends[1] - ends[0]) * along[i] / length;
-        let reach = half_width.max(0.5) + 1.0;
+    let side = |(i, cut): (usize, &Crosscut)| {
+        let reach = cut.half_width.max(0.5) + 1.0;
         // Half a pixel beyond the ends, where their borders fade.
         let beyond = match i {
             0 => -0.5,
-            _ if i + 1 == points.len() => 0.5,
+            _ if i + 1 == cuts.len() => 0.5,
             _ => 0.0,
         };
-        let ahead = -after.perp();
         let corner = |sign: f32| StripVertex {
-            at: (*point + sign * reach * stretch * middle + beyond * ahead).into(),
+            at: (Vec2::from(cut.at)
+                + sign * reach * cut.stretch * Vec2::from(cut.across)
+                + beyond * Vec2::from(cut.ahead))
+            .into(),
             across: sign * reach,
-            half_width,
-            along: along[i] + beyond,
+            half_width: cut.half_width,
+            along: cut.along + beyond,
             length,
             ends,
             color,
             fade,
         };
-        sides.push([corner(1.0), corner(-1.0)]);
-    }
+        [corner(1.0), corner(-1.0)]
+    };
+    let sides: Vec<[StripVertex; 2]> = cuts.iter().enumerate().map(side).collect();
     let quads = sides.windows(2).flat_map(|pair| {
         let ([a, b], [c, d]) = (pair[0], pair[1]);
         [a, b, c, c, b, d]

@@ -3,18 +3,30 @@
 
 use crate::{
     gpu::GpuError,
-    lens::color::{Srgb, linear_from_srgb},
+    lens::color::{Srgb, linear_from_srgb, srgb_from_linear},
     render::{
         diagnostics,
         eye::PictureTile,
-        furniture::Furniture,
+        furniture::{Furniture, Piece},
         furniture_on_gpu::{FurnitureKey, FurnitureOnGpu, Over},
         images::Of,
         parts::{parts, put},
         renderer::Renderer,
         resource::{formats::PICTURE, key::Key, recording::cleared},
+        text::TextLine,
     },
 };
+
+/// A board without its text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BoardApart {
+    /// The number of its image.
+    pub image: u64,
+    /// Width and height of that, pixels.
+    pub size: [u32; 2],
+    /// Its text, in pixels of the image.
+    pub texts: Vec<TextLine>,
+}
 
 impl Renderer {
     /// A page of `size` pixels, sRGB and opaque, row 0 at the top.
@@ -25,12 +37,33 @@ impl Renderer {
         diagnostics::boxes(&diagnostics::without_glyph(furniture))
             .iter()
             .for_each(|(_, message)| log::warn!("{message}"));
+        let [r, g, b] = linear_from_srgb(ground).map(f64::from);
+        self.on(size, wgpu::Color { r, g, b, a: 1.0 }, furniture)
+    }
+
+    /// Furniture on nothing, of `size` pixels: sRGB, straight alpha, row 0 at the top.
+    ///
+    /// # Errors
+    /// Those of the GPU.
+    pub fn layer(&mut self, size: [u32; 2], furniture: &Furniture) -> Result<Vec<[u8; 4]>, GpuError> {
+        let mut rgba = self.on(size, wgpu::Color::TRANSPARENT, furniture)?;
+        // Light is what is multiplied by alpha.
+        for pixel in rgba.iter_mut().filter(|pixel| pixel[3] != 255) {
+            let [r, g, b, alpha] = pixel.map(|byte| f32::from(byte) / 255.0);
+            let light = linear_from_srgb([r, g, b]).map(|c| if alpha > 0.0 { (c / alpha).min(1.0) } else { 0.0 });
+            let [r, g, b] = srgb_from_linear(light).map(|c| (255.0 * c).round() as u8);
+            *pixel = [r, g, b, pixel[3]];
+        }
+        Ok(rgba)
+    }
+
+    /// Furniture on a ground: sRGB, alpha premultiplied.
+    fn on(&mut self, size: [u32; 2], ground: wgpu::Color, furniture: &Furniture) -> Result<Vec<[u8; 4]>, GpuError> {
         let mut rgba = vec![[0; 4]; size[0] as usize * size[1] as usize];
         let mut on_gpu = FurnitureOnGpu::new(&self.gpu)?;
-        let [r, g, b] = linear_from_srgb(ground).map(f64::from);
         for part in parts(size) {
             let over = Over { whole: size, tile: part.drawn, layered: false };
-            let target = self.furniture_on(&mut on_gpu, furniture, over, wgpu::Color { r, g, b, a: 1.0 })?;
+            let target = self.furniture_on(&mut on_gpu, furniture, over, ground)?;
             let texels = self.gpu.read_texture(&target, 0, wgpu::TextureAspect::All)?;
             put(&mut rgba, size, part, bytemuck::cast_slice::<u8, [u8; 4]>(&texels));
         }
@@ -60,6 +93,36 @@ impl Renderer {
         self.images.copy(&self.gpu, number, &target, false);
         self.images.note(number, Of::Furniture(furniture.clone()));
         Ok(true)
+    }
+
+    /// A board without its text, as an image of its own, and the text; `None`: it has none, or is no board. [`Self::forget_image`] when it is not needed
+    /// any more.
+    ///
+    /// # Errors
+    /// Those of the GPU.
+    pub fn board_apart(&mut self, number: u64) -> Result<Option<BoardApart>, GpuError> {
+        let (Some(Of::Furniture(own)), Some(size)) = (self.images.of(number), self.images.size(number)) else {
+            return Ok(None);
+        };
+        let (mut texts, mut pieces) = (Vec::new(), Vec::new());
+        for piece in &own.pieces {
+            match piece {
+                Piece::Text(line) => texts.push(line.clone()),
+                other => pieces.push(other.clone()),
+            }
+        }
+        if texts.is_empty() {
+            return Ok(None);
+        }
+        // Numbers of boards count from below.
+        let image = !number;
+        self.board(image, size, &Furniture { pieces }, true)?;
+        Ok(Some(BoardApart { image, size, texts }))
+    }
+
+    /// Forgets an image.
+    pub fn forget_image(&mut self, number: u64) {
+        self.images.keep(|own| own != number);
     }
 
     /// A part of a page or a board.

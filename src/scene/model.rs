@@ -157,22 +157,69 @@ pub enum PoiPlace {
 /// How a picture is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Width and height, pixels, 1..=16384.
+    /// Width and height, pixels, 1..=16384, where there is no `paper`; of a column, its proportions. [`Self::pixels`] is what is drawn.
     pub size: [u32; 2],
+    /// Its size on paper; `None`: it has one in pixels.
+    pub paper: Option<Paper>,
     /// Samples per pixel, 1..=1024; `None`: [`DEFAULT_SAMPLES`].
     pub samples: Option<u32>,
-    /// Where legends of thematic colours stand.
-    pub legend: LegendPlace,
-    /// A title, at the top left.
+    /// Where legends of thematic colours stand; of itself at the bottom right.
+    pub legend: PiecePlace,
+    /// A title.
     pub title: Option<String>,
-    /// A caption, at the bottom left; `\n` begins a line.
+    /// Where it stands; of itself at the top left.
+    pub title_at: PiecePlace,
+    /// A caption; `\n` begins a line.
     pub caption: Option<String>,
+    /// Where it stands; of itself at the bottom left.
+    pub caption_at: PiecePlace,
+    /// Where a scale bar stands; in perspective, where the length that it shows lies.
+    pub scale_bar: PiecePlace,
+    /// Where an arrow stands that points to the north.
+    pub north_arrow: PiecePlace,
     /// Size of the text (its em); `None`: by the size of the picture.
     pub text: Option<TextSize>,
-    /// Dots per inch of the picture on paper, 10..=2400: what points are measured by, and what the file says. `None`: points are
-    /// those of [`DEFAULT_DPI`], and the file says nothing.
+    /// Dots per inch of the picture on paper, 10..=2400: what points are measured by, and what the file says. `None`: [`PAPER_DPI`] where
+    /// there is a `paper`; else points are those of [`DEFAULT_DPI`], and the file says nothing.
     pub dpi: Option<f64>,
 }
+
+/// The size of a figure on paper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Paper {
+    /// Width and height, millimetres.
+    Millimetres([f64; 2]),
+    /// As wide as a column, with the proportions of the figure's `size`.
+    Column(Column),
+}
+
+/// A column of a journal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Column {
+    /// One of two on a page.
+    Single,
+    /// Both.
+    Double,
+}
+
+impl Column {
+    /// All of them, with the words that scene files have for them.
+    pub const WORDS: [(&'static str, Self); 2] = [("single", Self::Single), ("double", Self::Double)];
+
+    /// How wide it is, millimetres.
+    pub fn width_mm(self) -> f64 {
+        match self {
+            Self::Single => 85.0,
+            Self::Double => 175.0,
+        }
+    }
+}
+
+/// Dots per inch of a figure with a size on paper where it says none.
+pub const PAPER_DPI: f64 = 300.0;
+
+/// Millimetres of an inch.
+pub const MM_PER_INCH: f64 = 25.4;
 
 /// Dots per inch where a figure in points says none: the reference pixel of the web, 1/96 inch.
 pub const DEFAULT_DPI: f64 = 96.0;
@@ -211,9 +258,38 @@ impl Figure {
         self.samples.unwrap_or(DEFAULT_SAMPLES)
     }
 
+    /// Width and height of the picture, pixels. 1..=16384 in a scene that a file has; whoever changes its paper or its dots bounds them.
+    pub fn pixels(&self) -> [u32; 2] {
+        let dots = |mm: f64| (mm / MM_PER_INCH * self.dots()).round().clamp(0.0, f64::from(u32::MAX)) as u32;
+        match self.paper {
+            None => self.size,
+            Some(Paper::Millimetres(size)) => size.map(dots),
+            Some(Paper::Column(column)) => {
+                let [w, h] = self.size.map(f64::from);
+                [1.0, h / w].map(|share| dots(column.width_mm() * share))
+            }
+        }
+    }
+
+    /// Gives it a size in pixels, in place of one on paper; its dots per inch stay.
+    pub fn set_pixels(&mut self, size: [u32; 2]) {
+        self.dpi = self.dpi_of_file();
+        (self.size, self.paper) = (size, None);
+    }
+
+    /// The dots per inch that its file says: none where it has a size in pixels and nothing else is said.
+    pub fn dpi_of_file(&self) -> Option<f64> {
+        self.dpi.or(self.paper.map(|_| PAPER_DPI))
+    }
+
+    /// Dots per inch, which points are measured by.
+    pub fn dots(&self) -> f64 {
+        self.dpi_of_file().unwrap_or(DEFAULT_DPI)
+    }
+
     /// The size of the text, pixels, where the scene gives it.
     pub fn text_px(&self) -> Option<f64> {
-        self.text.map(|size| size.px(self.dpi.unwrap_or(DEFAULT_DPI)))
+        self.text.map(|size| size.px(self.dots()))
     }
 }
 
@@ -221,31 +297,38 @@ impl Default for Figure {
     fn default() -> Self {
         Self {
             size: [1280, 720],
+            paper: None,
             samples: None,
-            legend: LegendPlace::default(),
+            legend: PiecePlace::default(),
             title: None,
+            title_at: PiecePlace::Auto,
             caption: None,
+            caption_at: PiecePlace::Auto,
+            scale_bar: PiecePlace::None,
+            north_arrow: PiecePlace::None,
             text: None,
             dpi: None,
         }
     }
 }
 
-/// Where legends stand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum LegendPlace {
+/// Where a piece of a figure stands: its title, its caption, its legends, its scale bar, its north arrow.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub enum PiecePlace {
     /// Nowhere.
     #[default]
     None,
-    /// Where there is most room, which is the bottom right: the title and the caption stand on the left.
+    /// Where the program finds it a good place.
     Auto,
-    /// In a corner.
-    Corner(Corner),
+    /// In a corner, or at the middle of a side.
+    Anchor(Anchor),
+    /// With its middle here, shares of the picture's width and height from the top left, 0 to 1.
+    At([f64; 2]),
 }
 
-/// A corner of the picture.
+/// A corner of the picture, or the middle of one of its sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Corner {
+pub enum Anchor {
     /// Top left.
     TopLeft,
     /// Top right.
@@ -254,35 +337,53 @@ pub enum Corner {
     BottomLeft,
     /// Bottom right.
     BottomRight,
+    /// The middle of the upper side.
+    Top,
+    /// The middle of the lower side.
+    Bottom,
+    /// The middle of the left side.
+    Left,
+    /// The middle of the right side.
+    Right,
 }
 
-impl Corner {
+impl Anchor {
     /// All of them, with the words that scene files have for them.
-    pub const WORDS: [(&'static str, Self); 4] = [
+    pub const WORDS: [(&'static str, Self); 8] = [
         ("top-left", Self::TopLeft),
         ("top-right", Self::TopRight),
         ("bottom-left", Self::BottomLeft),
         ("bottom-right", Self::BottomRight),
+        ("top", Self::Top),
+        ("bottom", Self::Bottom),
+        ("left", Self::Left),
+        ("right", Self::Right),
     ];
 
-    /// Whether it is a left one.
-    pub fn is_left(self) -> bool {
-        matches!(self, Self::TopLeft | Self::BottomLeft)
-    }
-
-    /// Whether it is a top one.
-    pub fn is_top(self) -> bool {
-        matches!(self, Self::TopLeft | Self::TopRight)
+    /// Where it is, shares of the picture's width and height from the top left.
+    pub fn share(self) -> [f32; 2] {
+        let x = match self {
+            Self::TopLeft | Self::BottomLeft | Self::Left => 0.0,
+            Self::Top | Self::Bottom => 0.5,
+            Self::TopRight | Self::BottomRight | Self::Right => 1.0,
+        };
+        let y = match self {
+            Self::TopLeft | Self::TopRight | Self::Top => 0.0,
+            Self::Left | Self::Right => 0.5,
+            Self::BottomLeft | Self::BottomRight | Self::Bottom => 1.0,
+        };
+        [x, y]
     }
 }
 
-impl LegendPlace {
-    /// The word that scene files have for it.
-    pub fn word(self) -> &'static str {
+impl PiecePlace {
+    /// The word that scene files have for it; `None`: they have a list of two numbers.
+    pub fn word(self) -> Option<&'static str> {
         match self {
-            Self::None => "none",
-            Self::Auto => "auto",
-            Self::Corner(corner) => Corner::WORDS.iter().find(|(_, c)| *c == corner).map_or("auto", |(word, _)| word),
+            Self::None => Some("none"),
+            Self::Auto => Some("auto"),
+            Self::Anchor(anchor) => Anchor::WORDS.iter().find(|(_, own)| *own == anchor).map(|(word, _)| *word),
+            Self::At(_) => None,
         }
     }
 
@@ -291,16 +392,12 @@ impl LegendPlace {
         match word {
             "none" => Some(Self::None),
             "auto" => Some(Self::Auto),
-            word => Corner::WORDS.iter().find(|(w, _)| *w == word).map(|(_, c)| Self::Corner(*c)),
+            word => Anchor::WORDS.iter().find(|(w, _)| *w == word).map(|(_, anchor)| Self::Anchor(*anchor)),
         }
     }
 
-    /// The corner, where there is a legend.
-    pub fn corner(self) -> Option<Corner> {
-        match self {
-            Self::None => None,
-            Self::Auto => Some(Corner::BottomRight),
-            Self::Corner(corner) => Some(corner),
-        }
+    /// Whether the piece is wanted.
+    pub fn is_some(self) -> bool {
+        self != Self::None
     }
 }

@@ -370,7 +370,7 @@ fn what_render_cannot_do_is_said_before_it_draws() {
     wrong(&[&city, "-o", &picture, "--set", "lens.0.shape.radius=80"], 2, "lens");
     wrong(&[&city, "-o", &picture, "--set", "nonsense"], 2, "PATH=VALUE");
     wrong(&[&scene, &city, "-o", &picture], 2, "scene");
-    wrong(&[&city, "-o", &folder.path("a.jpg")], 2, "PNG");
+    wrong(&[&city, "-o", &folder.path("a.jpg")], 2, ".jpg cannot be written; .png, .pdf or .svg would be right");
     wrong(&["/no/such.toml", "-o", &picture], 1, "such.toml");
     let misspelt = folder.file("b.toml", "veduta = 1\n[camra]\n");
     wrong(&[&misspelt, "-o", &picture], 1, "camera");

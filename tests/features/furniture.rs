@@ -5,16 +5,17 @@ use std::collections::BTreeMap;
 use crate::studio::*;
 use glam::DVec3;
 use veduta::{
-    figure::{self, furniture, legend::legends, overlays, scene_file},
+    figure::{self, legend::legends, overlays, scene_file},
     geom::Shape,
     lens::{EffectUse, Lens, Parameter, ramp::ramp},
+    overlay::Rect,
     render::{
         furniture::{Furniture, Panel, Piece},
-        picture::{Picture, Request, Studio},
+        picture::{Aovs, Picture, Request, Studio},
         text::{Halo, TextLine, TextStyle, Weight},
     },
-    scene::{Background, Figure, LegendPlace, Scene},
-    view::Camera,
+    scene::{Background, Figure, PiecePlace, Scene},
+    view::{Camera, View},
 };
 
 const SIZE: [u32; 2] = [640, 360];
@@ -33,7 +34,7 @@ fn scene_of(effect: EffectUse) -> Scene {
     let shape = Shape::Sphere { center: DVec3::new(0.0, -40.0, 10.0), radius: 110.0 };
     let lens = Lens { effects: vec![effect], ..lens("a lens", vec![shape], "sepia") };
     let camera = Camera::looking(DVec3::new(210.0, -560.0, 330.0), DVec3::new(0.0, -40.0, 15.0), 0.66);
-    Scene { figure: Figure { legend: LegendPlace::Auto, ..Figure::default() }, ..scene(camera, vec![lens]) }
+    Scene { figure: Figure { legend: PiecePlace::Auto, ..Figure::default() }, ..scene(camera, vec![lens]) }
 }
 
 fn request(samples: u32, transparent: bool) -> Request {
@@ -68,7 +69,7 @@ fn pixel(picture: &Picture, x: f32, y: f32) -> [u8; 4] {
 fn a_legend_bar_has_the_colours_of_the_ramp() {
     let mut studio = town();
     let scene = scene_of(thematic("yearOfConstruction"));
-    let furniture = figure::furniture_of(&studio, &scene, SIZE).expect("furniture");
+    let furniture = figure::furniture_of(&studio, &scene, SIZE).expect("furniture").furniture;
     let drawn = figure::draw(&mut studio, &scene, &request(1, false)).expect("a picture");
     // The bar: panels of one row, of full opacity, side by side.
     let panels = panels(&furniture);
@@ -89,7 +90,7 @@ fn swatches_have_the_colours_of_the_categories() {
     let mut studio = town();
     for samples in [1, 3] {
         let scene = scene_of(thematic("function"));
-        let furniture = figure::furniture_of(&studio, &scene, SIZE).expect("furniture");
+        let furniture = figure::furniture_of(&studio, &scene, SIZE).expect("furniture").furniture;
         let drawn = figure::draw(&mut studio, &scene, &request(samples, false)).expect("a picture");
         let legend = legends(&scene, &studio.model, &[true]).remove(0);
         let panels = panels(&furniture);
@@ -110,7 +111,7 @@ fn beside_its_card_a_legend_changes_nothing_and_no_aov_sees_it() {
     let asked = Request { aovs: ALL, ..request(2, false) };
     let plain = studio.render(&scene, &asked).expect("a picture");
     let drawn = figure::draw(&mut studio, &scene, &asked).expect("a picture");
-    let card = panels(&figure::furniture_of(&studio, &scene, SIZE).expect("furniture"))[0];
+    let card = panels(&figure::furniture_of(&studio, &scene, SIZE).expect("furniture").furniture)[0];
     let margin = card.softness_px / 2.0 + 1.0;
     let mut changed = 0;
     for (i, (a, b)) in plain.rgba.iter().zip(&drawn.rgba).enumerate() {
@@ -275,7 +276,7 @@ fn no_text_is_too_much() {
         scene.figure.title = Some(text.into());
         scene.figure.caption = Some(text.into());
         let drawn = figure::draw(&mut studio, &scene, &request(1, false)).expect("a picture");
-        let furniture = figure::furniture_of(&studio, &scene, SIZE).expect("furniture");
+        let furniture = figure::furniture_of(&studio, &scene, SIZE).expect("furniture").furniture;
         assert!(furniture.pieces.len() < 500);
         // Text never covers the picture's middle.
         let plain = studio.render(&scene, &request(1, false)).expect("a picture");
@@ -349,7 +350,7 @@ fn overlays_leave_titles_captions_and_legends_free() {
     for size in [SIZE, [1280, 720], [720, 1280]] {
         let asked = Request { size, ..request(1, false) };
         let own = figure::furniture_of(&studio, &scene, size).unwrap();
-        let cards = furniture::cards(&own);
+        let cards = own.taken;
         assert!((3..=6).contains(&cards.len()), "title, caption and legend, and their shadows: {cards:?}");
         let meets = |standing: &overlays::Standing| {
             let placed = standing.of_picture().expect("overlays");
@@ -362,12 +363,178 @@ fn overlays_leave_titles_captions_and_legends_free() {
         assert!(meets(&careless).0 > 0, "{size:?}: there is something to leave free");
         assert_eq!(meets(&careful), (0, 8), "{size:?}");
         // That is what a figure is.
-        let pieces = made.furniture.pieces.into_iter().chain(own.pieces).collect();
+        let pieces = made.furniture.pieces.into_iter().chain(own.furniture.pieces).collect();
         let drawn = studio.render_with(&scene, &asked, &Furniture { pieces }).unwrap();
         assert_eq!(figure::draw(&mut studio, &scene, &asked).unwrap().rgba, drawn.rgba, "{size:?}");
         if let Some(folder) = std::env::var_os("VEDUTA_SHOW") {
             let file = std::path::Path::new(&folder).join(format!("labelled-{}.png", size[0]));
             figure::picture::save_picture(&file, size, &drawn.rgba, true, &Default::default()).unwrap();
         }
+    }
+}
+
+/// A figure of some of everything, of a number: its scene file and its size.
+fn random_figure(seed: u64) -> (String, [u32; 2]) {
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let mut below = |most: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % most
+    };
+    let place = |below: &mut dyn FnMut(usize) -> usize| match below(11) {
+        0 => format!("[{:.3}, {:.3}]", below(1001) as f64 / 1000.0, below(1001) as f64 / 1000.0),
+        i => {
+            let words = [
+                "auto",
+                "top-left",
+                "top-right",
+                "bottom-left",
+                "bottom-right",
+                "top",
+                "bottom",
+                "left",
+                "right",
+                "auto",
+            ];
+            format!("\"{}\"", words[i - 1])
+        }
+    };
+    let size = [400 + below(1200) as u32, 300 + below(900) as u32];
+    let words = ["Houses", "of", "a", "town", "by", "their", "years,", "as", "the", "register", "has", "them"];
+    let mut text = "veduta = 1\n[city]\nfiles = [\"builtin:town\"]\n[camera]\n".to_owned();
+    let turn = below(360) as f64 / 57.3;
+    let eye = [350.0 * turn.cos(), 350.0 * turn.sin(), 60.0 + below(400) as f64];
+    text += &format!("eye = {eye:?}\ntarget = [0.0, 0.0, 10.0]\n");
+    if below(2) == 0 {
+        text += "projection = \"orthographic\"\nheight_m = 400.0\n";
+    }
+    text += "[figure]\n";
+    let said = |key: &str, most: usize, below: &mut dyn FnMut(usize) -> usize| {
+        let count = 1 + below(most);
+        let line: Vec<&str> = (0..count).map(|_| words[below(words.len())]).collect();
+        format!("{key} = \"{}\"\n{key}_at = {}\n", line.join(" "), place(below))
+    };
+    if below(4) > 0 {
+        text += &said("title", 12, &mut below);
+    }
+    if below(4) > 0 {
+        text += &said("caption", 30, &mut below);
+    }
+    let place = |below: &mut dyn FnMut(usize) -> usize| match below(9) {
+        0 => format!("[{:.3}, {:.3}]", below(1001) as f64 / 1000.0, below(1001) as f64 / 1000.0),
+        i => format!(
+            "\"{}\"",
+            ["auto", "top-left", "top-right", "bottom-left", "bottom-right", "top", "left", "right"][i - 1]
+        ),
+    };
+    for key in ["legend", "scale_bar", "north_arrow"] {
+        if below(4) > 0 {
+            text += &format!("{key} = {}\n", place(&mut below));
+        }
+    }
+    text += "[[lens]]\nname = \"ages\"\nshape = { kind = \"sphere\", center = [0.0, -40.0, 10.0], radius = 110.0 }\n";
+    text += "effects = [{ effect = \"thematic\", attribute = \"yearOfConstruction\" }]\n";
+    for i in 0..below(6) {
+        let turn = below(360) as f64 / 57.3;
+        text += &format!(
+            "[[poi]]\nname = \"p{i}\"\nat = [{:.3}, {:.3}, 8.0]\n[[lens]]\nname = \"l{i}\"\nkind = \"annotation\"\npoi = \"p{i}\"\n\
+             text = \"Place {i}\"\n[[overlay]]\nlens = \"l{i}\"\nsize = [{}, {}]\n",
+            90.0 * turn.cos(),
+            90.0 * turn.sin(),
+            90 + below(80),
+            40 + below(50),
+        );
+        // At most one has a place of its own: two of them may stand on each other.
+        if i == 0 && below(2) == 0 {
+            text += &match below(2) {
+                0 => format!("at = [{:.3}, {:.3}]\n", below(1001) as f64 / 1000.0, below(1001) as f64 / 1000.0),
+                _ => "call_out = { height_m = 20.0 }\n".to_owned(),
+            };
+        }
+    }
+    (text, size)
+}
+
+#[test]
+fn nothing_of_a_figure_stands_on_anything() {
+    let studio = town();
+    let (mut pieces, mut left_out, mut placed) = (0, 0, 0);
+    for seed in 0..200 {
+        let (text, size) = random_figure(seed);
+        let scene = scene_file::parse(&text, "s", &scene_file::Options::for_command_line())
+            .unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let laid = figure::furniture_of(&studio, &scene, size).expect("furniture");
+        let mut standing = overlays::Standing::default();
+        overlays::pass(&studio, &scene, size, &laid.taken, &mut standing).expect("places");
+        let view = View::new(studio.camera(&scene, size), size, &studio.extent()).expect("a view");
+        let is_card = |p: &&Panel| p.color == [1.0; 3] && p.opacity > 0.9 && p.opacity < 1.0;
+        let panels = panels(&laid.furniture);
+        let rect = |low: [f32; 2], high: [f32; 2]| Rect {
+            min: low.map(|v| v.floor() as i32),
+            max: high.map(|v| v.ceil() as i32),
+        };
+        let mut all: Vec<Rect> = panels.iter().filter(is_card).map(|p| rect(p.low, p.high)).collect();
+        // What has no card comes last of what is taken.
+        let is_of_panel = |taken: &&Rect| panels.iter().any(|p| rect(p.low, p.high) == **taken);
+        all.extend(laid.taken.iter().filter(|taken| !is_of_panel(taken)));
+        let figure = &scene.figure;
+        let asked = [figure.title.is_some(), figure.caption.is_some()].into_iter().filter(|is| *is).count()
+            + [figure.legend, figure.scale_bar, figure.north_arrow].iter().filter(|place| place.is_some()).count();
+        assert_eq!(all.len() + laid.left_out.len(), asked, "{seed}: {:?}\n{text}", laid.left_out);
+        pieces += all.len();
+        left_out += laid.left_out.len();
+        let own = overlays::standing(&studio, &scene, &view);
+        let of_picture = standing.of_picture().map_or(&[][..], |placed| &placed.placements);
+        placed += own.len() + of_picture.len();
+        all.extend(own);
+        all.extend(of_picture.iter().map(|placement| placement.rect));
+        for (i, a) in all.iter().enumerate() {
+            let is_in = (0..2).all(|axis| a.min[axis] >= 0 && a.max[axis] <= size[axis] as i32);
+            assert!(is_in, "{seed}: {a:?} in {size:?}\n{text}");
+            for b in &all[..i] {
+                let is_apart = (0..2).any(|axis| a.max[axis] <= b.min[axis] || b.max[axis] <= a.min[axis]);
+                assert!(is_apart, "{seed}: {a:?} on {b:?} in {size:?}\n{text}");
+            }
+        }
+    }
+    // Most have room.
+    assert!(
+        pieces > 500 && placed > 200 && left_out * 10 < pieces,
+        "{pieces} pieces, {left_out} left out, {placed} overlays"
+    );
+    println!("{pieces} pieces, {left_out} left out, {placed} overlays");
+}
+
+#[test]
+fn a_scale_bar_measures_what_is_drawn() {
+    let mut studio = town();
+    // A lens 200 m long, seen from above and from the side.
+    let shape =
+        Shape::Box { center: DVec3::ZERO, size: DVec3::new(200.0, 120.0, 400.0), rotation: glam::DQuat::IDENTITY };
+    for eye in [DVec3::new(0.0, -0.01, 700.0), DVec3::new(0.0, -500.0, 300.0)] {
+        let camera = orthographic(eye, DVec3::ZERO, 300.0);
+        let figure = Figure { scale_bar: PiecePlace::Auto, ..Figure::default() };
+        let scene = Scene { figure, ..scene(camera, vec![lens("a", vec![shape.clone()], "sepia")]) };
+        let asked =
+            Request { size: [1280, 720], aovs: Aovs { lens_mask: true, ..Aovs::default() }, ..request(1, false) };
+        let drawn = figure::draw(&mut studio, &scene, &asked).expect("a picture");
+        let mask = &drawn.lens_mask.as_ref().expect("a mask")[0];
+        let columns = (0..1280).filter(|x| (0..720).any(|y| mask[y * 1280 + x] & 1 == 1)).count() as f64;
+        let laid = figure::furniture_of(&studio, &scene, [1280, 720]).expect("furniture").furniture;
+        let bar = panels(&laid).into_iter().find(|p| p.radius_px == 0.0 && p.opacity == 1.0).expect("a bar");
+        let said = laid.pieces.iter().find_map(|piece| match piece {
+            Piece::Text(line) => line.text.strip_suffix("\u{a0}m")?.parse::<f64>().ok(),
+            _ => None,
+        });
+        let metres = said.expect("a length") / f64::from(bar.high[0] - bar.low[0]) * columns;
+        assert!((metres / 200.0 - 1.0).abs() < 0.005, "{metres} m");
+        // And in the picture: as many dark and white pixels, one after the other.
+        let y = (0.5 * (bar.low[1] + bar.high[1])).round();
+        let is_bar = |x: i32| {
+            let [r, g, b, _] = pixel(&drawn, x as f32, y);
+            let is_dark = [r, g, b].iter().all(|c| *c < 60);
+            is_dark || [r, g, b] == [255; 3]
+        };
+        let seen = (bar.low[0] as i32..).take_while(|x| is_bar(*x)).count() as f32;
+        assert!((seen - (bar.high[0] - bar.low[0])).abs() <= 1.5, "{seen} pixels of {bar:?}");
     }
 }

@@ -195,3 +195,83 @@ fn a_program_that_is_ended_leaves_the_file_that_was_there_and_nothing_beside_it(
     let output = folder.run(&["synth", "--buildings", "5", "--seed", "1", "-o", "small.city.json"]);
     assert_eq!((code(&output), parts(&folder.0)), (Some(0), 0), "{}", said(&output));
 }
+
+/// The pixels of the first PNG in an SVG.
+fn pixels_in(svg: &str) -> image::RgbImage {
+    use base64::Engine;
+    let data = svg.split("data:image/png;base64,").nth(1).and_then(|rest| rest.split('"').next()).expect("a picture");
+    let png = base64::engine::general_purpose::STANDARD.decode(data).expect("base64");
+    image::load_from_memory(&png).expect("a PNG").into_rgb8()
+}
+
+#[test]
+fn figures_for_paper_hold_the_picture_and_text_over_it() {
+    let folder = Folder::new("paper");
+    let read = |name: &str| fs::read(folder.0.join(name)).expect(name);
+    let done = |arguments: &[&str]| {
+        let output = folder.run(arguments);
+        assert_eq!(code(&output), Some(0), "{arguments:?}: {}", said(&output));
+    };
+    let small = ["--set", "figure.size_mm=[30, 20]", "--set", "figure.dpi=254"];
+    done(&[&["render", "scene.toml", "-o", "plain.png"], &small[..]].concat());
+    let titled = [&small[..], &["--set", "figure.title='A <triangle>'", "--set", "figure.text_px=12"]].concat();
+    for out in ["a.svg", "b.svg", "a.pdf", "b.pdf"] {
+        done(&[&["render", "scene.toml", "-o", out], &titled[..]].concat());
+    }
+    assert!(read("a.svg") == read("b.svg") && read("a.pdf") == read("b.pdf"), "the same scene is the same bytes");
+    let plain = image::open(folder.0.join("plain.png")).expect("a picture").into_rgb8();
+    assert_eq!(plain.dimensions(), (300, 200), "30 x 20 mm at 254 dots per inch");
+    let svg = String::from_utf8(read("a.svg")).expect("text");
+    assert!(
+        svg.contains("width=\"30mm\" height=\"20mm\" viewBox=\"0 0 300 200\"")
+            && svg.contains(">A &lt;triangle&gt;</text>")
+    );
+    assert!(pixels_in(&svg) == plain, "the picture without its title");
+    let pdf = String::from_utf8_lossy(&read("a.pdf")).into_owned();
+    assert!(
+        pdf.starts_with("%PDF-1.7") && pdf.contains("/Width 300/Height 200") && pdf.contains("/Title(A <triangle>)")
+    );
+    // A size on the command line is one in pixels.
+    done(&["render", "scene.toml", "-o", "c.svg", "--size", "100x50", "--set", "figure.column='single'"]);
+    let svg = String::from_utf8(read("c.svg")).expect("text");
+    assert!(
+        svg.contains("width=\"8.4667mm\" height=\"4.2333mm\" viewBox=\"0 0 100 50\""),
+        "100 x 50 pixels at 300 dots per inch"
+    );
+    // Sheets: the cells are pictures.
+    for out in ["sheet.svg", "sheet.pdf", "sheet.png"] {
+        done(&["sheet", "sheet.toml", "-o", out, "--set", "figure.size=[60, 40]", "--cells", "cells"]);
+    }
+    let svg = String::from_utf8(read("sheet.svg")).expect("text");
+    let cell = image::open(folder.0.join("cells/a-b.png")).expect("a cell").into_rgb8();
+    assert!(pixels_in(&svg) == cell && read("sheet.pdf").starts_with(b"%PDF"));
+}
+
+#[test]
+fn what_no_figure_can_be_is_said() {
+    let folder = Folder::new("formats");
+    let refused = |arguments: &[&str], expected: i32, why: &str| {
+        let output = folder.run(arguments);
+        assert_eq!(code(&output), Some(expected), "{arguments:?}: {}", said(&output));
+        assert!(said(&output).contains(why), "{arguments:?}: {}", said(&output));
+    };
+    for command in [["render", "scene.toml"], ["sheet", "sheet.toml"]] {
+        let with = |out: &'static str| [&command[..], &["-o", out]].concat();
+        refused(&with("a.eps"), 2, "a.eps: .eps cannot be written; .png, .pdf or .svg would be right");
+        refused(&with("a"), 2, "a: names no format; .png, .pdf or .svg would be right");
+    }
+    let with = |set: &[&'static str]| {
+        let sets = set.iter().flat_map(|set| ["--set", set]);
+        ["render", "scene.toml", "-o", "a.pdf"].into_iter().chain(sets).collect::<Vec<_>>()
+    };
+    refused(
+        &with(&["figure.dpi=2400", "figure.size_mm=[210, 297]"]),
+        2,
+        "210 x 297 mm at 2400 dpi are 19843 x 28063 pixels; 1 to 16384 on a side would be right, by another dpi or size_mm",
+    );
+    refused(&with(&["figure.column='single'", "figure.size_mm=[30, 20]"]), 2, "is given together with");
+    refused(&with(&["figure.column='triple'"]), 2, "must be \"single\" or \"double\"");
+    refused(&with(&["figure.north_arrow=[0.5, 1.5]"]), 2, "or [x, y], two numbers 0 to 1, is [0.5, 1.5]");
+    refused(&with(&["figure.north_arrow='botom'"]), 2, "did you mean \"bottom\"?");
+    assert!(!folder.0.join("a.pdf").exists());
+}

@@ -49,7 +49,7 @@ impl<'a> Takes<'a> {
             Kind::Number { min, max } => Self::Number { min: *min, max: *max, is_whole: false },
             Kind::Boolean => Self::Boolean,
             Kind::Word { now, .. } => Self::Words(now.to_vec()),
-            Kind::WordOrTable(words, _) => Self::Words(words.to_vec()),
+            Kind::WordOrTable(words, _) | Kind::WordOrPlace(words) => Self::Words(words.to_vec()),
             Kind::Color => Self::Color,
             Kind::Text | Kind::Lod | Kind::Names => Self::Text,
             Kind::Rendering => Self::Words(ROWS.iter().map(|row| row.word).collect()),
@@ -60,6 +60,7 @@ impl<'a> Takes<'a> {
             | Kind::PlanPoint
             | Kind::PlanLengths
             | Kind::PicturePlace
+            | Kind::PaperSize
             | Kind::Size => Self::Numbers,
             _ => Self::Toml,
         }

@@ -11,6 +11,7 @@ use crate::{
         quality::Smoothness,
         render::sprites::SpriteRequest,
     },
+    figure::paper::Format,
     render::frame::Backend,
 };
 
@@ -19,11 +20,13 @@ Examples:
   veduta render city.city.json -o city.png
   veduta render tiles/*.city.jsonl -o city.png --size 1920x1080 --quality draft
   veduta render scene.toml -o figure.png --set lens.0.shape.radius=80 --set lens.b.enabled=false
+  veduta render scene.toml -o figure.pdf --set figure.size_mm=[120,80] --set figure.scale_bar=auto
   veduta render scene.toml -o figure.png --sprite hall=hall.exr
   veduta render scene.toml -o beyond.png --through gate      what is seen after stepping through a portal
   veduta render scene.toml -o figure.png --aov depth=depth.exr --aov object-id=ids.png --stats stats.json
 
-A FILE that ends in .toml is a scene (docs/scene.md); city files get a good first view.
+A FILE that ends in .toml is a scene (docs/scene.md); city files get a good first view. PDF and SVG hold the picture as pixels, and text, legends and
+lines over it as such; they are as large on paper as [figure] says, at 96 dots per inch where it says nothing.
 AOVs: depth (.exr metres, .png 16 bit), object-id (.png), normal (.exr, .png), lens-mask (.png, .exr); KIND:displayed
 includes image-space lenses. The same input on the same adapter gives the same bytes.";
 
@@ -36,8 +39,8 @@ pub struct Arguments {
     /// One scene (.toml), or city files
     #[arg(required = true, value_name = "SCENE|FILE")]
     pub files: Vec<PathBuf>,
-    /// The picture to write: a PNG file, `-` for stdout
-    #[arg(short, long, value_name = "OUT.png")]
+    /// The picture to write: PNG, PDF or SVG by its name; `-` for stdout, as PNG
+    #[arg(short, long, value_name = "OUT.png|pdf|svg")]
     pub output: PathBuf,
     /// Width and height in pixels [default: the scene's, else 1280x720]
     #[arg(long, value_name = "WxH")]
@@ -96,10 +99,7 @@ impl Arguments {
                 "render: one scene (.toml) or any number of city files; a scene names its files itself",
             ));
         }
-        let extension = self.output.extension().map(|e| e.to_string_lossy().to_lowercase());
-        if self.output.as_os_str() != "-" && extension.as_deref() != Some("png") {
-            return Err(Failure::usage(format!("{}: pictures are PNG; OUT.png would be right", self.output.display())));
-        }
+        Format::of(&self.output).map_err(Failure::usage)?;
         let streams = self.outputs().filter(|file| file.as_os_str() == "-").count();
         if streams > 1 {
             return Err(Failure::usage("-: two results cannot go to one file"));
@@ -250,6 +250,9 @@ mod tests {
         assert!(check(&["a.json", "b.json"], "a.png", "depth=d.png").is_ok());
         assert!(check(&["a.toml", "b.json"], "a.png", "depth=d.png").is_err());
         assert!(check(&["a.json"], "a.jpg", "depth=d.png").is_err());
+        assert!(check(&["a.json"], "a", "depth=d.png").is_err());
+        assert!(check(&["a.json"], "a.PDF", "depth=d.png").is_ok());
+        assert!(check(&["a.json"], "a.svg", "depth=d.png").is_ok());
         assert!(check(&["a.json"], "d.png", "depth=d.png").is_err());
         assert!(check(&["a.json"], "-", "depth=d.png").is_ok());
     }

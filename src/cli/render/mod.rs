@@ -18,7 +18,7 @@ use crate::{
         load, output, terminal,
     },
     figure::{
-        self,
+        paper::{self, Format},
         picture::{self, Notes},
         scene_file::{self, Options},
     },
@@ -42,7 +42,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let options = options_of(arguments.scene(), global);
     let (mut scene, of_camera) = scene_of(&arguments.files, &arguments.settings, &options)?;
     if let Some(size) = arguments.size {
-        scene.figure.size = size.0;
+        scene.figure.set_pixels(size.0);
     }
     arguments.smoothness.put_into(&mut scene)?;
     let written: Vec<PathBuf> = arguments.outputs().cloned().collect();
@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let (mut studio, warnings) = open(&scene, &options, &written, global)?;
     let mut scene = with_camera(scene, &of_camera, &studio)?;
     if let Some(name) = &arguments.through {
-        let from = studio.camera(&scene, scene.figure.size);
+        let from = studio.camera(&scene, scene.figure.pixels());
         portal(&scene, name, from)?.redo(&mut scene);
     }
     if let Some(object) = studio.building_around(&scene) {
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     }
     let has = |kind| arguments.aovs.iter().any(|aov| aov.kind == kind);
     let request = Request {
-        size: scene.figure.size,
+        size: scene.figure.pixels(),
         samples: scene.figure.samples(),
         transparent: arguments.transparent,
         aovs: Aovs {
@@ -78,8 +78,9 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         backend: arguments.shaders.into(),
     };
     let progress = terminal::Progress::spinning("drawing", global);
-    let mut picture =
-        figure::draw(&mut studio, &scene, &request).map_err(|error| match (&error, arguments.scene()) {
+    let format = Format::of(&arguments.output).map_err(Failure::usage)?;
+    let (mut picture, page) =
+        paper::draw(&mut studio, &scene, &request, format).map_err(|error| match (&error, arguments.scene()) {
             (RenderError::Scene(message), Some(file)) => Failure::failed(format!("{}: {message}", file.display())),
             _ => Failure::failed(error),
         })?;
@@ -99,8 +100,11 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         })?;
     }
     // Last, so that a picture that is there means that everything is there.
-    picture::save_picture(&arguments.output, picture.size, &picture.rgba, !arguments.transparent, &notes)
-        .map_err(output::unwritten)
+    let saved = match page {
+        Some(page) => page.save(&arguments.output, format, &notes, scene.figure.title.as_deref()),
+        None => picture::save_picture(&arguments.output, picture.size, &picture.rgba, !arguments.transparent, &notes),
+    };
+    saved.map_err(output::unwritten)
 }
 
 /// The step through the portal of this name.
@@ -154,7 +158,7 @@ pub fn scene_of(files: &[PathBuf], settings: &[String], options: &Options) -> Ou
 /// The scene after what changes the camera that it leaves to the program: a good first view of the city.
 pub fn with_camera(mut scene: Scene, of_camera: &[String], studio: &Studio) -> Outcome<Scene> {
     if !of_camera.is_empty() {
-        scene.camera = Some(studio.camera(&scene, scene.figure.size));
+        scene.camera = Some(studio.camera(&scene, scene.figure.pixels()));
     }
     changed(scene, of_camera)
 }

@@ -52,7 +52,7 @@ impl SpriteRequest {
 pub fn write(studio: &mut Studio, scene: &Scene, request: &SpriteRequest) -> Outcome {
     let lens = request.lens(scene)?;
     let file = &request.file;
-    let sprite = studio.sprite_of(scene, scene.figure.size, lens).map_err(|error| match error {
+    let sprite = studio.sprite_of(scene, scene.figure.pixels(), lens).map_err(|error| match error {
         RenderError::Scene(message) => Failure::failed(format!("{}: {message}", file.display())),
         other => Failure::failed(other),
     })?;

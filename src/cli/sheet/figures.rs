@@ -37,10 +37,10 @@ pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, Re
     let wants = |figure| sheet.figures.contains(&figure);
     let mut found = Figures::default();
     if let (true, Some(id)) = (wants(CellFigure::VisibleShare), &cell.poi) {
-        found.share = Some(share_in(studio, &cell.scene, cell.scene.figure.size, id)?);
+        found.share = Some(share_in(studio, &cell.scene, cell.scene.figure.pixels(), id)?);
     }
     if wants(CellFigure::Occluders) {
-        let asked = Request { statistics: true, ..Request::plain(cell.scene.figure.size) };
+        let asked = Request { statistics: true, ..Request::plain(cell.scene.figure.pixels()) };
         let statistics = studio.render(&cell.scene, &asked)?.statistics;
         let occluders = statistics.lenses.iter().filter_map(|lens| lens.occluders.as_ref());
         let found_by_each: Vec<u64> = occluders.map(|list| list.len() as u64).collect();
@@ -51,7 +51,7 @@ pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, Re
     }
     if wants(CellFigure::FrameRatio) {
         let plain = Scene { lenses: Vec::new(), ..cell.scene.clone() };
-        found.ratio = Some(frame_ratio(studio, &cell.scene, &plain, cell.scene.figure.size, sheet.pairs)?);
+        found.ratio = Some(frame_ratio(studio, &cell.scene, &plain, cell.scene.figure.pixels(), sheet.pairs)?);
     }
     Ok(found)
 }

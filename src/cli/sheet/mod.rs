@@ -19,6 +19,7 @@ use crate::{
         self,
         file::write_whole,
         legend::{self, Legend},
+        paper::{Format, Page},
         picture::{self, Notes},
         scene_file::{self, Options},
         sheet::{
@@ -37,7 +38,7 @@ Examples:
   veduta sheet styles.sheet.toml -o styles.png --cells cells
   veduta sheet styles.sheet.toml -o styles.png --set style.base=clay --figures styles.json
 
-SHEET names a scene and what of it changes in each row and column (docs/sheet.md). Beside OUT.png each cell is written
+SHEET names a scene and what of it changes in each row and column (docs/sheet.md). Beside OUT each cell is written
 as the picture that `veduta render` makes of it: OUT-ROW-COLUMN.png.";
 
 /// Arguments of `veduta sheet`.
@@ -47,8 +48,8 @@ pub struct Arguments {
     /// A sheet file; `-` for stdin
     #[arg(value_name = "SHEET.toml")]
     pub sheet: PathBuf,
-    /// The sheet to write: a PNG file, `-` for stdout
-    #[arg(short, long, value_name = "OUT.png")]
+    /// The sheet to write: PNG, PDF or SVG by its name; `-` for stdout, as PNG
+    #[arg(short, long, value_name = "OUT.png|pdf|svg")]
     pub output: PathBuf,
     /// Write the cells into this folder, as ROW-COLUMN.png; made where it is missing
     #[arg(long, value_name = "DIR")]
@@ -91,10 +92,7 @@ pub struct Drawn {
 /// Draws the sheet and its cells.
 pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let output = &arguments.output;
-    let extension = output.extension().map(|e| e.to_string_lossy().to_lowercase());
-    if output.as_os_str() != "-" && extension.as_deref() != Some("png") {
-        return Err(Failure::usage(format!("{}: sheets are PNG; OUT.png would be right", output.display())));
-    }
+    let format = Format::of(output).map_err(Failure::usage)?;
     let outputs = || std::iter::once(output).chain(&arguments.figures);
     output::check(outputs(), [&arguments.sheet])?;
     let name = arguments.sheet.display().to_string();
@@ -117,7 +115,8 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let cells = cell_files(arguments, &cells_of(&task)?)?;
     task.written = outputs().chain(&cells).cloned().collect();
     output::keep(&task.written, scene_file::files_of(&task.scene).iter().chain([&file, &arguments.sheet]))?;
-    let drawn = draw(&task, &mut None, global)?;
+    let mut kept = None;
+    let drawn = draw(&task, &mut kept, global)?;
     if let Some(folder) = &arguments.cells {
         std::fs::create_dir_all(folder).map_err(|error| Failure::io(&folder.display().to_string(), &error))?;
     }
@@ -131,14 +130,24 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         write_whole(file, |out| out.write_all(text.as_bytes())).map_err(output::unwritten)?;
     }
     // Last, so that a sheet that is there means that everything is there.
-    save(output, &drawn)
+    match (format, kept) {
+        (Format::Pdf | Format::Svg, Some((_, mut studio))) => {
+            let cells = drawn.cells.iter().map(|(_, rgba)| &rgba[..]);
+            let page = Page::of_sheet(&mut studio.renderer, &drawn.layout, cells).map_err(Failure::failed)?;
+            page.save(output, format, &notes_of(&drawn), task.sheet.title.as_deref()).map_err(output::unwritten)
+        }
+        _ => save(output, &drawn),
+    }
+}
+
+fn notes_of(drawn: &Drawn) -> Notes {
+    Notes { dpi: drawn.dpi, ..picture::notes(None) }
 }
 
 /// Writes the sheet itself.
 pub fn save(file: &Path, drawn: &Drawn) -> Outcome {
     let page = &drawn.layout;
-    let notes = Notes { dpi: drawn.dpi, ..picture::notes(None) };
-    picture::save_picture(file, page.size, &drawn.page, true, &notes).map_err(output::unwritten)
+    picture::save_picture(file, page.size, &drawn.page, true, &notes_of(drawn)).map_err(output::unwritten)
 }
 
 /// Where the cells go: no two to one file, and none to the sheet's.
@@ -182,7 +191,7 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
     let mut cells = cells_of(task)?;
     let failed = |message: String| Failure::failed(format!("{name}: {message}"));
     let count = cells.len();
-    let size = scene.figure.size;
+    let size = scene.figure.pixels();
     let mut words = Words {
         captions: cells.iter().map(|cell| cell.caption.clone()).collect(),
         figures: vec![vec!["–".to_owned(); sheet.figures.len()]; count],
@@ -216,7 +225,7 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
     let progress = terminal::Progress::counting(count as u64, "drawing", "cells", global);
     for (done, &i) in order.iter().enumerate() {
         let cell = &mut cells[i];
-        cell.scene.figure.size = cell_size;
+        cell.scene.figure.set_pixels(cell_size);
         progress.says(format!("drawing {}", cell.name));
         let studio = studio_of(kept, &cell.scene, task, global)?;
         let in_cell = |error: &dyn std::fmt::Display| failed(format!("cell {}: {error}", cell.name));
@@ -264,7 +273,7 @@ fn studio_of<'k>(
 /// The request that `veduta render` makes.
 fn request(scene: &Scene) -> Request {
     Request {
-        size: scene.figure.size,
+        size: scene.figure.pixels(),
         samples: scene.figure.samples(),
         transparent: false,
         aovs: Default::default(),

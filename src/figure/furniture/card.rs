@@ -1,13 +1,12 @@
 //! A card: lines one below the other on a quiet ground, in a corner of the picture.
 
 use crate::{
-    figure::furniture::height_of,
+    figure::furniture::{desk::Area, height_of},
     lens::color::Srgb,
     render::{
         furniture::{Panel, Piece},
-        text::{CAP_HEIGHT, TextLine, TextStyle, Typesetter},
+        text::{CAP_HEIGHT, Halo, TextLine, TextStyle, Typesetter},
     },
-    scene::Corner,
 };
 
 /// The ground of cards, and how much of the city it hides: print shows through what is thinner.
@@ -18,18 +17,18 @@ pub const INK: Srgb = [0.1, 0.115, 0.14];
 /// Text beside it.
 pub const QUIET_INK: Srgb = [0.33, 0.355, 0.39];
 /// A line around swatches, so that a pale one does not fade into the card.
-const RIM: Fill = Fill { color: [0.0, 0.0, 0.0], opacity: 0.22 };
+pub(super) const RIM: Fill = Fill { color: [0.0, 0.0, 0.0], opacity: 0.22 };
 
 /// How a panel is filled.
 #[derive(Clone, Copy)]
-struct Fill {
-    color: Srgb,
+pub(super) struct Fill {
+    pub color: Srgb,
     /// 0..=1.
-    opacity: f32,
+    pub opacity: f32,
 }
 
 impl Fill {
-    fn opaque(color: Srgb) -> Self {
+    pub fn opaque(color: Srgb) -> Self {
         Self { color, opacity: 1.0 }
     }
 }
@@ -39,13 +38,6 @@ impl Fill {
 pub struct Size {
     pub width: f32,
     pub height: f32,
-}
-
-/// A corner and the distances from its sides, pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    pub corner: Corner,
-    pub margin: [f32; 2],
 }
 
 /// A line of a card.
@@ -125,38 +117,35 @@ impl Painter {
             .collect()
     }
 
-    /// Puts the card there, or says that there is no room; its height.
-    pub fn card_or_warn(&mut self, what: &str, lines: &[Line], room: Size, place: Place, size: [u32; 2]) -> f32 {
+    /// Width and height of the card of some lines, whole pixels; `None`: it would be empty, or larger than `room`.
+    pub fn card_size(&self, lines: &[Line], room: Size) -> Option<[f32; 2]> {
         let inside = self.inside(room);
         let is_empty = lines.iter().all(|line| line.width <= 0.0);
         if is_empty || lines.iter().any(|l| l.width > inside.width) || height_of(lines) > inside.height {
-            let [w, h] = size;
-            log::warn!(
-                "there is no room for the {what} in {w}x{h} pixels; a larger picture, smaller letters (figure.text_px, text_pt) or a shorter text would be right"
-            );
-            return 0.0;
+            return None;
         }
-        self.card(lines, place, size)
-    }
-
-    fn card(&mut self, lines: &[Line], place: Place, size: [u32; 2]) -> f32 {
         let [pad_x, pad_y] = self.padding();
         let width = lines.iter().map(|l| l.width).fold(0.0, f32::max).ceil() + 2.0 * pad_x;
-        let height = height_of(lines) + 2.0 * pad_y;
-        let [w, h] = size.map(|side| side as f32);
-        let left = if place.corner.is_left() { place.margin[0] } else { w - place.margin[0] - width };
-        let top = if place.corner.is_top() { place.margin[1] } else { h - place.margin[1] - height };
-        let (low, high) = ([left, top], [left + width, top + height]);
+        Some([width, height_of(lines) + 2.0 * pad_y])
+    }
+
+    /// An empty card.
+    pub fn card(&mut self, Area { low, high }: Area) {
         let radius = self.px(0.5);
         let drop = self.px(0.12);
-        self.panel([left, top + drop], [high[0], high[1] + drop], SHADOW, radius, 1.1 * self.em);
+        self.panel([low[0], low[1] + drop], [high[0], high[1] + drop], SHADOW, radius, 1.1 * self.em);
         self.panel(low, high, CARD, radius, 1.0);
-        let mut y = top + pad_y;
+    }
+
+    /// A card with these lines, which has the size that they have.
+    pub fn lines(&mut self, lines: &[Line], area: Area) {
+        self.card(area);
+        let [pad_x, pad_y] = self.padding();
+        let mut y = area.low[1] + pad_y;
         for line in lines {
-            self.line(line, [left + pad_x, y]);
+            self.line(line, [area.low[0] + pad_x, y]);
             y += line.height;
         }
-        height
     }
 
     /// Puts one line there.
@@ -229,14 +218,20 @@ impl Painter {
         self.panel(low, high, Fill::opaque(color), radius, 1.0);
     }
 
-    fn panel(&mut self, low: [f32; 2], high: [f32; 2], fill: Fill, radius_px: f32, softness_px: f32) {
+    /// A rectangle.
+    pub(super) fn panel(&mut self, low: [f32; 2], high: [f32; 2], fill: Fill, radius_px: f32, softness_px: f32) {
         let Fill { color, opacity } = fill;
         self.pieces.push(Piece::Panel(Panel { low, high, color, opacity, radius_px, softness_px, ellipse: false }));
     }
 
     fn text(&mut self, text: &str, at: [f32; 2], style: TextStyle, color: Srgb) {
+        self.text_on(text, at, style, color, None);
+    }
+
+    /// A line of text, with a halo where it stands on no card.
+    pub(super) fn text_on(&mut self, text: &str, at: [f32; 2], style: TextStyle, color: Srgb, halo: Option<Halo>) {
         if !text.is_empty() {
-            self.pieces.push(Piece::Text(TextLine { text: text.to_owned(), at, style, color, halo: None }));
+            self.pieces.push(Piece::Text(TextLine { text: text.to_owned(), at, style, color, halo }));
         }
     }
 }

@@ -1,8 +1,9 @@
-//! Title, caption and legends of a figure: where everything stands, in pixels, as [`Furniture`].
+//! Title, caption, legends and the signs of a map of a figure: where everything stands, in pixels, as [`Furniture`].
 //!
 //! ```text
 //! +------------------------------------------+
-//! | [title]                                  |
+//! | [title]                     [north arrow]|
+//! |                                          |
 //! |                                          |
 //! |                            [   legend   ]|
 //! | [caption caption]          [            ]|
@@ -10,10 +11,13 @@
 //! ```
 //!
 //! All of it stands on quiet cards, which are readable over dark and light cities and on paper. Sizes follow the em,
-//! the em follows the picture; what has no room is shortened, counted, and at last left out with a warning.
+//! the em follows the picture. No card stands on another, nor on an overlay with a place of its own: it makes way ([`desk`]). What has
+//! no room is shortened, counted, and at last left out with a warning.
 
 pub(in crate::figure) mod card;
+mod desk;
 pub(in crate::figure) mod section;
+mod signs;
 
 use crate::{
     figure::legend::Legend,
@@ -22,10 +26,12 @@ use crate::{
         furniture::{Furniture, Piece},
         text::{TextStyle, Weight, cleaned},
     },
-    scene::{Corner, Figure},
+    scene::{Anchor, Figure, PiecePlace},
+    view::View,
 };
 
-use card::{Line, Painter, Place, Size};
+use card::{Line, Painter, Size};
+use desk::{Area, Desk};
 
 /// The em of a picture 1280 × 720, pixels.
 const EM_PX: f32 = 13.0;
@@ -43,45 +49,142 @@ pub fn em_px(figure: &Figure, size: [u32; 2]) -> f32 {
     figure.text_px().map_or(by_size, |px| px as f32)
 }
 
-/// Lays out a figure's title, caption and legends over a picture of `size` pixels.
-pub fn lay_out(figure: &Figure, legends: &[Legend], size: [u32; 2]) -> Furniture {
-    let mut painter = Painter::new(em_px(figure, size));
-    let margin = painter.px(1.2);
-    let [w, h] = size.map(|side| side as f32);
-    let corner = figure.legend.corner().filter(|_| !legends.is_empty());
-    // What the legend takes of the title's line or of the caption's.
-    let beside = |is_top: bool| match corner {
-        Some(corner) if corner.is_top() == is_top && !corner.is_left() => (w * LEGEND_WIDTH).floor() + margin,
-        _ => 0.0,
-    };
-    let mut taken = [0.0, 0.0];
-    if let Some(title) = figure.title.as_ref().filter(|text| !cleaned(text).is_empty()) {
-        let room = Size { width: w - 2.0 * margin - beside(true), height: 0.25 * h };
-        let style = TextStyle { size_px: 1.4 * painter.em, weight: Weight::SemiBold, tabular: false };
-        let lines = painter.paragraph(title, style, room, 2);
-        let place = Place { corner: Corner::TopLeft, margin: [margin, margin] };
-        taken[0] = painter.card_or_warn("title", &lines, room, place, size);
+/// Furniture, and what of the picture it takes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Laid {
+    /// The pieces.
+    pub furniture: Furniture,
+    /// What overlays leave free: cards with their shadows, and what stands without one; pixels, rounded outwards.
+    pub taken: Vec<Rect>,
+    /// Names of pieces that have no room; a warning has told of each.
+    pub left_out: Vec<&'static str>,
+}
+
+/// Lays out what a figure asks for over the picture of a view. It leaves `standing` free, pixels: overlays with places of their own.
+pub fn lay_out(figure: &Figure, legends: &[Legend], view: &View, standing: &[Rect]) -> Laid {
+    let painter = Painter::new(em_px(figure, view.size));
+    let (margin, gap) = (painter.px(1.2), painter.px(0.6));
+    let size = view.size.map(|side| side as f32);
+    let desk = Desk::new(size, margin, gap, standing.iter().map(Area::from).collect());
+    let mut layout = Layout { figure, size, margin, painter, desk, bare: Vec::new(), left_out: Vec::new() };
+    let title = layout.title();
+    let caption = layout.caption();
+    layout.legend(legends, title + caption);
+    layout.scale_bar(view);
+    layout.north_arrow(view);
+    let furniture = Furniture { pieces: layout.painter.pieces };
+    let taken = cards(&furniture).into_iter().chain(layout.bare.iter().map(Area::rect)).collect();
+    Laid { furniture, taken, left_out: layout.left_out }
+}
+
+/// A layout under way.
+struct Layout<'a> {
+    figure: &'a Figure,
+    /// Of the picture, pixels.
+    size: [f32; 2],
+    margin: f32,
+    painter: Painter,
+    desk: Desk,
+    /// What stands without a card.
+    bare: Vec<Area>,
+    left_out: Vec<&'static str>,
+}
+
+impl Layout<'_> {
+    /// The title; its height.
+    fn title(&mut self) -> f32 {
+        let Some(title) = self.figure.title.as_ref().filter(|text| !cleaned(text).is_empty()) else { return 0.0 };
+        let [w, h] = self.size;
+        let width = w - 2.0 * self.margin - self.beside(self.figure.title_at, Anchor::TopLeft);
+        let style = TextStyle { size_px: 1.4 * self.painter.em, weight: Weight::SemiBold, tabular: false };
+        let rooms = [1.0, 0.6].map(|share| Size { width: share * width, height: 0.25 * h });
+        let place = self.figure.title_at;
+        self.put("title", place, Anchor::TopLeft, &rooms, |painter, room| painter.paragraph(title, style, room, 2))
     }
-    if let Some(caption) = figure.caption.as_ref().filter(|text| !text.trim().is_empty()) {
-        let width = (w - 2.0 * margin - beside(false)).min(0.6 * w).min(60.0 * painter.em);
-        let room = Size { width, height: h / 3.0 };
-        let style = TextStyle { size_px: painter.em, weight: Weight::Regular, tabular: false };
-        let lines = painter.paragraph(caption, style, room, 6);
-        let place = Place { corner: Corner::BottomLeft, margin: [margin, margin] };
-        taken[1] = painter.card_or_warn("caption", &lines, room, place, size);
+
+    /// The caption; its height.
+    fn caption(&mut self) -> f32 {
+        let Some(caption) = self.figure.caption.as_ref().filter(|text| !text.trim().is_empty()) else { return 0.0 };
+        let [w, h] = self.size;
+        let beside = self.beside(self.figure.caption_at, Anchor::BottomLeft);
+        let width = (w - 2.0 * self.margin - beside).min(0.6 * w).min(60.0 * self.painter.em);
+        let style = TextStyle { size_px: self.painter.em, weight: Weight::Regular, tabular: false };
+        let rooms = [1.0, 0.7, 0.5].map(|share| Size { width: share * width, height: h / 3.0 });
+        let place = self.figure.caption_at;
+        self.put("caption", place, Anchor::BottomLeft, &rooms, |painter, room| {
+            painter.paragraph(caption, style, room, 6)
+        })
     }
-    if let Some(corner) = corner {
-        let side = taken[usize::from(!corner.is_top())];
-        let used = if corner.is_left() && side > 0.0 { side + painter.px(0.6) } else { 0.0 };
-        let room = Size {
-            width: (w * LEGEND_WIDTH).floor().min(w - 2.0 * margin).min(24.0 * painter.em),
-            height: (LEGEND_HEIGHT * h).min(h - 2.0 * margin - taken[0] - taken[1]),
+
+    /// The legends, where title and caption are so high together.
+    fn legend(&mut self, legends: &[Legend], taken: f32) {
+        if !self.figure.legend.is_some() || legends.is_empty() {
+            return;
+        }
+        let [w, h] = self.size;
+        let width = (w * LEGEND_WIDTH).floor().min(w - 2.0 * self.margin).min(24.0 * self.painter.em);
+        let height = (LEGEND_HEIGHT * h).min(h - 2.0 * self.margin - taken);
+        // What makes way for others has less room.
+        let rooms = [1.0, 0.8, 0.6, 0.45, 0.3].map(|share| Size { width, height: share * height });
+        let place = self.figure.legend;
+        self.put("legend", place, Anchor::BottomRight, &rooms, |painter, room| section::fitted(painter, legends, room));
+    }
+
+    /// What a legend in the other corner takes of the line that a text stands on.
+    fn beside(&self, text: PiecePlace, auto: Anchor) -> f32 {
+        let share = |place: PiecePlace, auto: Anchor| match place {
+            PiecePlace::Auto => Some(auto.share()),
+            PiecePlace::Anchor(anchor) => Some(anchor.share()),
+            PiecePlace::None | PiecePlace::At(_) => None,
         };
-        let lines = section::fitted(&mut painter, legends, room);
-        let place = Place { corner, margin: [margin, margin + used] };
-        painter.card_or_warn("legend", &lines, room, place, size);
+        match (share(text, auto), share(self.figure.legend, Anchor::BottomRight)) {
+            (Some([x, y]), Some([legend_x, legend_y])) if y == legend_y && x != legend_x => {
+                (self.size[0] * LEGEND_WIDTH).floor() + self.margin
+            }
+            _ => 0.0,
+        }
     }
-    Furniture { pieces: painter.pieces }
+
+    /// Puts a card of lines where it is wanted, in the first of some rooms that it has; or says that it is left out. Its height.
+    fn put(
+        &mut self,
+        what: &'static str,
+        place: PiecePlace,
+        auto: Anchor,
+        rooms: &[Size],
+        mut lines_in: impl FnMut(&mut Painter, Size) -> Vec<Line>,
+    ) -> f32 {
+        for room in rooms {
+            let lines = lines_in(&mut self.painter, *room);
+            let Some(size) = self.painter.card_size(&lines, *room) else { continue };
+            let Some(low) = self.place(place, &[auto], size) else { continue };
+            let area = Area::new(low, size);
+            self.painter.lines(&lines, area);
+            self.desk.take(area);
+            return size[1];
+        }
+        self.left_out(what);
+        0.0
+    }
+
+    /// Where a piece of this size stands.
+    fn place(&self, place: PiecePlace, auto: &[Anchor], size: [f32; 2]) -> Option<[f32; 2]> {
+        match place {
+            PiecePlace::None => None,
+            PiecePlace::Auto => self.desk.at_first(auto, size),
+            PiecePlace::Anchor(anchor) => self.desk.at_first(&[anchor], size),
+            PiecePlace::At(at) => self.desk.nearest(self.desk.at_share(at, size), size),
+        }
+    }
+
+    fn left_out(&mut self, what: &'static str) {
+        self.left_out.push(what);
+        let [w, h] = self.size;
+        log::warn!(
+            "there is no room for the {what} in {w}x{h} pixels, and it is left out; a larger picture, smaller letters (figure.text_px, \
+             text_pt), a shorter text or fewer pieces would be right"
+        );
+    }
 }
 
 /// Where the cards of furniture stand, with their shadows but not what is on them; pixels, rounded outwards.

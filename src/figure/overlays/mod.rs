@@ -148,6 +148,16 @@ pub fn overlays(
     Ok(Overlays { without_glyph: gathered.without_glyph, ..made })
 }
 
+/// What of a picture overlays take that have places of their own, or stand in the scene; pixels.
+pub fn standing(studio: &Studio, scene: &Scene, view: &View) -> Vec<Rect> {
+    if scene.overlays.iter().all(|overlay| matches!(overlay.stand, Stand::Laid)) {
+        return Vec::new();
+    }
+    let lenses = scene.lenses.iter().enumerate();
+    let shown: Vec<Shown> = lenses.filter_map(|(i, lens)| places::seen(studio, scene, view, i, lens)).collect();
+    spots::standing(scene, view, &shown, em_px(&scene.figure, view.size))
+}
+
 /// Lets overlays take their places for a frame that is not drawn.
 ///
 /// # Errors

@@ -73,6 +73,13 @@ pub(super) fn spots(
     (spots, placed)
 }
 
+/// What those take that the layout does not place: those with a place of their own, and boards.
+pub(super) fn standing(scene: &Scene, view: &View, shown: &[Shown], em: f32) -> Vec<Rect> {
+    let own = shown.iter().filter_map(|one| Some(at_its_place(scene, view, one, em)?.rect));
+    let boards = shown.iter().filter_map(|one| on_board(view, one, em)?.board?.blocks(view.size));
+    own.chain(boards).collect()
+}
+
 fn depth(spot: &Spot) -> f64 {
     spot.board.as_ref().map_or(0.0, |board| board.depth)
 }

@@ -11,7 +11,7 @@ use crate::{
         chosen::Choice,
     },
     render::picture::{RenderError, Studio},
-    scene::{Figure, LegendPlace, Poi, PoiPlace, Scene, Style},
+    scene::{Figure, PiecePlace, Poi, PoiPlace, Scene, Style},
     view::{Camera, Field, Framing, default_near_m, local},
 };
 
@@ -159,7 +159,14 @@ pub fn local(
 fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
     let mut own = scene.clone();
     own.animation = None;
-    own.figure = Figure { legend: LegendPlace::None, title: None, caption: None, ..own.figure };
+    own.figure = Figure {
+        legend: PiecePlace::None,
+        scale_bar: PiecePlace::None,
+        north_arrow: PiecePlace::None,
+        title: None,
+        caption: None,
+        ..own.figure
+    };
     for lens in &mut own.lenses {
         let is_in = match &shown.lenses {
             Some(names) => names.contains(&lens.name),

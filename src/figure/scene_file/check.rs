@@ -253,6 +253,7 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         Kind::Size => {
             node.list().is_some_and(|l| l.len() == 2 && l.iter().all(|n| matches!(n.data, Data::Integer(1..=16_384))))
         }
+        Kind::PaperSize => node.numbers::<2>().is_some_and(|v| v.iter().all(|mm| (0.1..=1e4).contains(mm))),
         Kind::Table(_) | Kind::Shape | Kind::Handler => matches!(node.data, Data::Table(_)),
         Kind::Shapes => node.list().is_some_and(|l| !l.is_empty()),
         Kind::Names => match node.list() {
@@ -266,6 +267,10 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
         }
         Kind::Tests | Kind::Steps => node.list().is_some_and(|l| !l.is_empty()),
         Kind::Rendering => return wrong_rendering(kind, node),
+        Kind::WordOrPlace(words) => match &node.data {
+            Data::List(_) => node.numbers::<2>().is_some_and(|v| v.iter().all(|c| (0.0..=1.0).contains(c))),
+            _ => return wrong_word(kind, words, &[], node),
+        },
         Kind::WordOrTable(words, _) => match &node.data {
             Data::Table(_) => true,
             _ => return wrong_word(kind, words, &[], node),

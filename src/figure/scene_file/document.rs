@@ -302,6 +302,7 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Size => {
             json!({ "type": "array", "items": { "type": "integer", "minimum": 1, "maximum": 16384 }, "minItems": 2, "maxItems": 2 })
         }
+        Kind::PaperSize => pair(0.1, 1e4),
         Kind::Table(table) => Value::Object(object(table)),
         Kind::Tables(table) => json!({ "type": "array", "items": object(table) }),
         Kind::Shape => json!({ "$ref": SHAPE }),
@@ -334,6 +335,7 @@ fn of_kind(kind: &Kind) -> Value {
             let cases = json!({ "type": "array", "items": one, "minItems": 1 });
             json!({ "anyOf": [{ "enum": words }, one, cases, of_kind(&Kind::Effects)] })
         }
+        Kind::WordOrPlace(words) => json!({ "anyOf": [{ "enum": words }, pair(0.0, 1.0)] }),
         Kind::WordOrTable(words, table) => json!({ "anyOf": [{ "enum": words }, object(table)] }),
     }
 }

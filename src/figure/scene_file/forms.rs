@@ -13,7 +13,7 @@ use crate::{
         sprite::{Format, Mapping},
     },
     scene::{
-        Background, BaseStyle, LegendPlace, StyleLook, Technique,
+        Background, BaseStyle, PiecePlace, StyleLook, Technique,
         animation::Numbers,
         overlay::{Along, BuiltInFrame, LineEnd, LineKind, Outside, Sizes},
     },
@@ -265,13 +265,15 @@ impl Worded for Technique {
     }
 }
 
-impl Worded for LegendPlace {
-    fn word(&self) -> &'static str {
-        Self::word(*self)
-    }
+form!(Same, PiecePlace, place_data, |node| match node.text() {
+    Some(word) => PiecePlace::of_word(word),
+    None => node.numbers::<2>().map(PiecePlace::At),
+});
 
-    fn of_word(word: &str) -> Option<Self> {
-        Self::of_word(word)
+fn place_data(place: &PiecePlace) -> Data {
+    match place {
+        PiecePlace::At(at) => (*at).into(),
+        place => place.word().unwrap_or("auto").into(),
     }
 }
 

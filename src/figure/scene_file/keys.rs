@@ -51,6 +51,8 @@ pub enum Kind {
     PlanLengths,
     /// `[x, y]`, each 0 to 1: shares of a picture's width and height.
     PicturePlace,
+    /// One of some words, or a [`Kind::PicturePlace`].
+    WordOrPlace(&'static [&'static str]),
     /// At least so many points `[x, y]`.
     PlanPoints(usize),
     /// Lists of at least three points `[x, y]`.
@@ -67,6 +69,8 @@ pub enum Kind {
     Lod,
     /// `[width, height]` in pixels.
     Size,
+    /// `[width, height]` in millimetres.
+    PaperSize,
     /// A table.
     Table(&'static Table),
     /// Tables, `[[key]]`.
@@ -172,6 +176,10 @@ impl Kind {
             Self::Points(least) => format!("a list of at least {least} points [x, y, z]"),
             Self::PlanPoint => format!("[x, y], two numbers from {:e} to {FAR_M:e}", -FAR_M),
             Self::PicturePlace => "[x, y], two numbers 0 to 1".into(),
+            Self::WordOrPlace(words) => {
+                let words: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+                format!("{}, or {}", words.join(" or "), Self::PicturePlace.describe())
+            }
             Self::PlanLengths => format!("[width, height], two numbers from 0 to {FAR_M:e}"),
             Self::PlanPoints(least) => format!("a list of at least {least} points [x, y]"),
             Self::Rings => "a list of rings, each a list of at least 3 points [x, y]".into(),
@@ -183,6 +191,7 @@ impl Kind {
             Self::Background => "\"sky\" or a colour: \"#rrggbb\" or [r, g, b] of 0 to 1".into(),
             Self::Lod => "a level of detail like \"2\" or \"1.3\"".into(),
             Self::Size => "[width, height], two whole numbers 1 to 16384".into(),
+            Self::PaperSize => "[width, height], two numbers 0.1 to 10000".into(),
             Self::Table(_) => "a table".into(),
             Self::Tables(_) => "a list of tables".into(),
             Self::Shape | Self::Handler => "a table { kind = ..., ... }".into(),

@@ -18,8 +18,8 @@ use crate::{
         sprite::{Format, Mapping},
     },
     scene::{
-        Animation, Background, BaseStyle, Corner, Figure, Layout, LegendPlace, Overlay, Poi, PoiPlace, Style,
-        StyleLook, Sun, Technique, TextSize, Transparency,
+        Anchor, Animation, Background, BaseStyle, Column, Figure, Layout, Overlay, Paper, PiecePlace, Poi, PoiPlace,
+        Style, StyleLook, Sun, Technique, TextSize, Transparency,
         animation::{Change, ChangeKey, Numbers},
         overlay::{Along, BuiltInFrame, CallOut, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes, Stand},
         trajectory::{Pace as WayPace, Trajectory},
@@ -492,13 +492,30 @@ prop_compose! {
     }
 }
 
+/// Places of a piece; `least` 1: of one that is somewhere.
+fn piece_places(least: usize) -> impl Strategy<Value = PiecePlace> {
+    (least..11usize, prop::array::uniform2(0.0..=1.0f64)).prop_map(|(which, at)| match which {
+        0 => PiecePlace::None,
+        1 => PiecePlace::Auto,
+        10 => PiecePlace::At(at),
+        which => PiecePlace::Anchor(Anchor::WORDS[which - 2].1),
+    })
+}
+
 prop_compose! {
-    fn figures()(place in 0..6usize, title in prop::option::of(".{1,8}"), caption in prop::option::of("[a-z\n\"]{1,8}"),
-        text in prop::option::of((6.0..=180.0f64, any::<bool>())), dpi in prop::option::of(72.0..=150.0f64)) -> Figure {
-        let corner = |i: usize| LegendPlace::Corner(Corner::WORDS[i].1);
-        let legend = if place < 2 { [LegendPlace::None, LegendPlace::Auto][place] } else { corner(place - 2) };
+    fn figures()(wanted in prop::array::uniform2(piece_places(1)), places in prop::array::uniform3(piece_places(0)), title in prop::option::of(".{1,8}"), caption in prop::option::of("[a-z\n\"]{1,8}"),
+        text in prop::option::of((6.0..=180.0f64, any::<bool>())), dpi in prop::option::of(72.0..=150.0f64),
+        paper in prop::option::of(prop_oneof![
+            prop::array::uniform2(5.0..500.0f64).prop_map(Paper::Millimetres), prop::sample::select(Column::WORDS.map(|(_, c)| Paper::Column(c)).to_vec())]),
+        pixels in prop::array::uniform2(100..2000u32)) -> Figure {
+        let [title_at, caption_at] = wanted;
+        let [legend, scale_bar, north_arrow] = places;
+        // Points of a paper without dots of its own are those of 300.
+        let text = text.map(|(size, is_in_points): (f64, bool)| if is_in_points { (size.min(90.0), true) } else { (size, false) });
         let size = |(size, is_in_points): (f64, bool)| if is_in_points { TextSize::Points(size) } else { TextSize::Pixels(size) };
-        Figure { legend, title, caption, text: text.map(size), dpi, ..Figure::default() }
+        let is_in_mm = matches!(paper, Some(Paper::Millimetres(_)));
+        let pixels = if is_in_mm { Figure::default().size } else { pixels };
+        Figure { size: pixels, paper, legend, title, title_at, caption, caption_at, scale_bar, north_arrow, text: text.map(size), dpi, ..Figure::default() }
     }
 }
 
@@ -605,7 +622,7 @@ prop_compose! {
             style: Style { look: StyleLook::WORDS[sun.0.unsigned_abs() as usize % 5].1, base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency, chord_px },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).chain(moving).collect(),
             lenses,
-            figure: Figure { size, samples: Some(samples), ..figure },
+            figure: Figure { size: if figure.paper.is_some() { figure.size } else { size }, samples: Some(samples), ..figure },
             animation,
             ..Scene::default()
         };

@@ -8,7 +8,7 @@ use crate::{
         sheet::{CellFigure, Setting, Sheet},
     },
     lens::nearest::did_you_mean,
-    scene::{LegendPlace, PoiPlace, Scene},
+    scene::{PiecePlace, PoiPlace, Scene},
 };
 
 /// A cell.
@@ -22,7 +22,7 @@ pub struct Cell {
     pub column: usize,
     /// What stands below it.
     pub caption: Option<String>,
-    /// What it shows: without title, caption and legend, which are the sheet's.
+    /// What it shows: without title, caption and legend, which are the sheet's, and the signs of a map.
     pub scene: Scene,
     /// Id of the object whose share is told, where that is asked for.
     pub poi: Option<String>,
@@ -62,7 +62,8 @@ pub fn cells(sheet: &Sheet, base: &Scene, name: &str, options: &Options) -> Resu
             continue;
         }
         scene.figure.samples = sheet.samples.or(scene.figure.samples);
-        scene.figure.legend = LegendPlace::None;
+        let figure = &mut scene.figure;
+        [figure.legend, figure.scale_bar, figure.north_arrow] = [PiecePlace::None; 3];
         (scene.figure.title, scene.figure.caption, scene.animation) = (None, None, None);
         let poi = match sheet.figures.contains(&CellFigure::VisibleShare).then(|| poi_of(sheet, &scene)) {
             None => None,
@@ -177,7 +178,7 @@ cell = [{ row = "r", column = "d", caption = "C", set = ["lens.a.shape.radius=4"
         assert_eq!(all[1].caption.as_deref(), Some("C"));
         for cell in &all {
             let figure = &cell.scene.figure;
-            assert_eq!((figure.samples, &figure.title, figure.legend), (Some(9), &None, LegendPlace::None));
+            assert_eq!((figure.samples, &figure.title, figure.legend), (Some(9), &None, PiecePlace::None));
             assert_eq!((&cell.scene.animation, &cell.poi), (&None, &None));
         }
         assert_eq!(made("").unwrap()[0].name, "1");

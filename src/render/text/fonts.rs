@@ -50,6 +50,32 @@ impl Face {
         }
     }
 
+    /// How many files the fonts are.
+    pub const FILES: usize = 3;
+
+    /// The number of its file, from 0.
+    pub fn file(self) -> usize {
+        match self {
+            Self::First(Weight::Regular) => 0,
+            Self::First(Weight::SemiBold) => 1,
+            Self::Fallback(_) => 2,
+        }
+    }
+
+    /// Its file.
+    pub fn data(self) -> &'static [u8] {
+        Self::data_of(self.file())
+    }
+
+    /// The file of a number below [`Self::FILES`].
+    pub fn data_of(file: usize) -> &'static [u8] {
+        match file {
+            0 => REGULAR,
+            1 => SEMI_BOLD,
+            _ => fallback_data(),
+        }
+    }
+
     /// How much heavier than its outlines it is drawn, em.
     pub fn emboldened_em(self) -> f32 {
         if self == Self::Fallback(Weight::SemiBold) { EMBOLDENED_EM } else { 0.0 }

@@ -6,7 +6,10 @@
 
 mod breaks;
 pub mod fonts;
+pub mod polygon;
 mod raster;
+
+use std::ops::Range;
 
 use swash::{scale::ScaleContext, shape::ShapeContext, text::Script};
 
@@ -68,12 +71,40 @@ pub struct TextLine {
 }
 
 /// A glyph and where its origin is on the base line, pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct PlacedGlyph {
     face: Face,
     id: u16,
     x: f32,
     y: f32,
+    /// The bytes of the text that it stands for; all glyphs of a letter have the same.
+    source: Range<usize>,
+}
+
+/// Glyphs of one font in a line of text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GlyphRun {
+    /// The font.
+    pub face: Face,
+    /// The em, pixels.
+    pub size_px: f32,
+    /// What they say.
+    pub text: String,
+    /// From left to right.
+    pub glyphs: Vec<SetGlyph>,
+    /// Where the run ends, pixels from the picture's left.
+    pub end: f32,
+}
+
+/// A glyph in its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetGlyph {
+    /// Its number in the font.
+    pub id: u16,
+    /// Its origin on the base line, pixels from the picture's top left.
+    pub at: [f32; 2],
+    /// The bytes of the run's text that it stands for; all glyphs of a letter have the same.
+    pub source: Range<usize>,
 }
 
 /// Height of capitals, share of the em: to set text in the middle of something.
@@ -150,15 +181,44 @@ impl Typesetter {
                 .size(size_of(style))
                 .features(&[("tnum", u16::from(style.tabular))])
                 .build();
+            let start = run.as_ptr() as usize - text.as_ptr() as usize;
             shaper.add_str(run);
             shaper.shape_with(|cluster| {
+                let source = cluster.source.to_range();
                 for glyph in cluster.glyphs {
-                    glyphs.push(PlacedGlyph { face, id: glyph.id, x: x + glyph.x, y: glyph.y });
+                    let source = start + source.start..start + source.end;
+                    glyphs.push(PlacedGlyph { face, id: glyph.id, x: x + glyph.x, y: glyph.y, source });
                     x += glyph.advance;
                 }
             });
         }
         (glyphs, x)
+    }
+
+    /// The glyphs of a line where they are drawn, font by font.
+    pub fn set(&mut self, line: &TextLine) -> Vec<GlyphRun> {
+        let text = cleaned(&line.text);
+        let (glyphs, width) = self.shaped(&text, line.style);
+        let [left, base] = line.at;
+        let runs: Vec<&[PlacedGlyph]> = glyphs.chunk_by(|a, b| a.face == b.face).collect();
+        let first = |run: &[PlacedGlyph]| (run[0].source.start, run[0].x);
+        let ends = runs.iter().skip(1).map(|next| first(next)).chain([(text.len(), width)]);
+        let run = |(run, (end, x)): (&&[PlacedGlyph], (usize, f32))| {
+            let start = first(run).0;
+            let glyph = |glyph: &PlacedGlyph| SetGlyph {
+                id: glyph.id,
+                at: [left + glyph.x, base - glyph.y],
+                source: glyph.source.start - start..glyph.source.end - start,
+            };
+            GlyphRun {
+                face: run[0].face,
+                size_px: size_of(line.style),
+                text: text[start..end].to_owned(),
+                glyphs: run.iter().map(glyph).collect(),
+                end: left + x,
+            }
+        };
+        runs.iter().zip(ends).map(run).collect()
     }
 
     /// The width of a text on one line, pixels.
