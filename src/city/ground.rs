@@ -42,6 +42,8 @@ pub struct Ground {
     pub tiles: Vec<Tile>,
     /// Which of them lie below the city, and within its margin; the others around it.
     pub below: Range<usize>,
+    /// Whether the city has terrain, roads, water or land of its own: then this fills their gaps, and the city ends where it did.
+    pub is_filling: bool,
     /// Vertices, grouped by tile; `surface` is [`NONE`].
     pub vertices: Vec<Vertex>,
     /// Three per triangle, counter-clockwise from above, relative to the tile's first vertex.
@@ -99,6 +101,7 @@ pub fn plain_ground(model: &CityModel, shown: &[u32]) -> Option<Ground> {
     let mut ground = Ground {
         tiles: Vec::new(),
         below: 0..0,
+        is_filling: !known.ground.is_empty(),
         vertices: Vec::new(),
         indices: Vec::new(),
         bounds: Aabb::EMPTY,

@@ -132,6 +132,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(crate::seeds::config())]
+
         #[test]
         fn an_eye_that_moves_by_itself_is_never_below_ground_or_in_a_building(
             steps in prop::collection::vec((-9.0..9.0, -9.0..9.0, -6.0..5.0), 1..80),

@@ -111,6 +111,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
 /// The sheets that ship with it, by the names of their pictures; each varies one of the scenes.
 pub const SHEETS: &[(&str, &str)] = &[
     ("colour-styles", include_str!("../../scenes/colour-styles.sheet.toml")),
+    ("looks", include_str!("../../scenes/looks.sheet.toml")),
     ("occlusion-styles", include_str!("../../scenes/occlusion-styles.sheet.toml")),
     ("opened", include_str!("../../scenes/opened.sheet.toml")),
     ("trapp-3-3-3", include_str!("../../scenes/trapp-3-3-3.sheet.toml")),

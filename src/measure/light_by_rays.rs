@@ -9,7 +9,7 @@ use crate::{
     geom::{Aabb, Ray},
     measure::difference::{Against, linear_light},
     render::{
-        light::{self, LightSample, to_sun},
+        light::{self, LightSample, Surround, to_sun},
         palette::CLAY,
         picture::{Aovs, Picture, RenderError, Request, Studio},
     },
@@ -56,9 +56,8 @@ impl LightByRays {
         let colors = light::uniform(
             &scene.sun,
             &LightSample::new(&scene.sun, 0, 1),
-            (scene.style.look, scene.style.background),
+            &Surround { look: scene.style.look, background: scene.style.background, fade: None },
             [None; 2],
-            None,
             view.camera.eye,
             1.0,
         );

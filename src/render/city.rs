@@ -52,6 +52,8 @@ pub struct Chunk {
     pub translucency: Translucency,
     /// Whether it is plain ground around the city: so far off that nothing throws shadows there.
     pub is_around: bool,
+    /// Whether it is plain ground that gives way to a deformation of the whole city: around it, and where it only fills gaps.
+    pub gives_way: bool,
 }
 
 impl Chunk {
@@ -250,6 +252,7 @@ struct Run {
     cell: u32,
     details: u8,
     is_around: bool,
+    gives_way: bool,
 }
 
 /// How corners become vertices.
@@ -276,15 +279,17 @@ impl Gathered {
     fn close_run(&mut self, bounds: Aabb, cell: u32, details: u8) {
         let end = self.weld.indices.len();
         if end > self.runs.last().map_or(0, |run| run.end) {
-            self.runs.push(Run { end, bounds, cell, details, is_around: false });
+            self.runs.push(Run { end, bounds, cell, details, is_around: false, gives_way: false });
         }
     }
 
     /// A run of plain ground.
-    fn close_ground(&mut self, bounds: Aabb, is_around: bool) {
+    fn close_ground(&mut self, bounds: Aabb, is_around: bool, is_filling: bool) {
         let before = self.runs.len();
         self.close_run(bounds, NO_CELL, details_of(NO_CELL, Detail::Full));
-        self.runs[before..].iter_mut().for_each(|run| run.is_around = is_around);
+        for run in &mut self.runs[before..] {
+            (run.is_around, run.gives_way) = (is_around, is_around || is_filling);
+        }
     }
 
     /// Cuts the runs into chunks: where another cell begins, and where one has more than a chunk; a run longer than that is cut by triangles.
@@ -294,21 +299,24 @@ impl Gathered {
             IVec3::from(vertex.origin).as_dvec3() + Vec3::from(vertex.position).as_dvec3()
         };
         let step = CHUNK_TRIANGLES * 3;
-        let chunk = |(from, to): (usize, usize), bounds: Aabb, (cell, details, is_around): (u32, u8, bool)| Chunk {
+        let chunk = |(from, to): (usize, usize),
+                     bounds: Aabb,
+                     (cell, details, is_around, gives_way): (u32, u8, bool, bool)| Chunk {
             range: from as u32..to as u32,
             bounds,
             cell,
             details,
             translucency: self.group.translucency,
             is_around,
+            gives_way,
         };
         let mut chunks: Vec<Chunk> = Vec::new();
-        let (mut start, mut bounds, mut done, mut of) = (0, Aabb::EMPTY, 0, (NO_CELL, 0, false));
+        let (mut start, mut bounds, mut done, mut of) = (0, Aabb::EMPTY, 0, (NO_CELL, 0, false, false));
         for run in &self.runs {
             let is_long = run.end - done > 2 * step;
             // Terrain is cut as soon as there is a chunk of it; cells are about that long.
             let is_full = done - start >= if of.0 == NO_CELL { step } else { 2 * step };
-            let of_run = (run.cell, run.details, run.is_around);
+            let of_run = (run.cell, run.details, run.is_around, run.gives_way);
             if done > start && (is_long || is_full || of_run != of) {
                 chunks.push(chunk((start, done), bounds, of));
                 (start, bounds) = (done, Aabb::EMPTY);
@@ -358,10 +366,7 @@ impl CityBuffers {
                 tile_numbers().map(|t| shown.model.geometries[shown.model.tiles[t as usize].geometry as usize].object);
             objects.for_each(|object| *shells.entry(object).or_default() |= layout::SURFACE_LIT_AS_BEFORE);
         }
-        let mut table = SurfaceTable::new(shown.model, &textures, &shells);
-        if shown.ground.is_some() {
-            table.ground = surfaces::ground_color(shown, &textures);
-        }
+        let mut table = SurfaceTable::of(shown, &textures, &shells);
         let apart: FxHashSet<u32> = shown.coplanar.iter().map(|c| c.triangle).collect();
         let smooth = is_smooth(shown, &apart) || has_normals(shown, &textures);
         let kind = WeldKind { smooth, provoking: provoking_corner(gpu) };
@@ -379,8 +384,7 @@ impl CityBuffers {
         let mut sections = Vec::new();
         let mut bounds = extent;
         if let Some(ground) = shown.ground {
-            gather_ground(ground, &mut table, &mut plain[0]);
-            bounds = bounds.union(ground.bounds_below());
+            bounds = bounds.union(gather_ground(ground, &mut table, &mut plain[0]));
         }
         let (mut triangles, mut vertices) = (0, 0);
         let mut push = |section: Option<(Section, usize, usize)>| {
@@ -585,7 +589,8 @@ fn textured_corners(
     })
 }
 
-fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered) {
+/// Adds the plain ground; the box around what of it the city's extent has, metres.
+fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered) -> Aabb {
     let up = encode_normal(DVec3::Z);
     for (number, tile) in ground.tiles.iter().enumerate() {
         table.begin_tile();
@@ -597,8 +602,9 @@ fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered
             plain.weld.triangle(table.number(NONE, up, false), corners.map(|position| Corner { position, normal: up }));
         }
         plain.weld.end_tile();
-        plain.close_ground(tile.bounds, !ground.below.contains(&number));
+        plain.close_ground(tile.bounds, !ground.below.contains(&number), ground.is_filling);
     }
+    if ground.is_filling { Aabb::EMPTY } else { ground.bounds_below() }
 }
 
 /// Block models by cell, of each first what looks up, and what the table of surfaces says of them.

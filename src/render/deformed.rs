@@ -435,6 +435,8 @@ impl Met {
         let mut all_chunks = city.buffers.sections.iter().flat_map(|section| &section.chunks);
         let is_met = reach.placement.is_none()
             || all_chunks.any(|chunk| reach.may_raise(&chunk.bounds) || !reach.near(&chunk.bounds).is_empty());
+        // What goes on without end has no form that a deformation of all could give it.
+        let moves_all = supports.iter().any(|support| bounds.corners().iter().all(|corner| support.contains(*corner)));
         let has_textures = sections().any(|(section, _)| section.kind.images().is_some());
         let (mut left, mut met, mut chunks) = (Vec::new(), Vec::new(), Vec::new());
         let mut all = MetPart::default();
@@ -442,8 +444,15 @@ impl Met {
         for (section, source) in sections().filter(|_| is_met) {
             let kind = MetKind { layer: section.layer, has_textures };
             // In parts that keep their order.
-            let parts: Vec<MetPart> = section
-                .chunks
+            let stays: Vec<Chunk>;
+            let chunks_here = match moves_all && section.chunks.iter().any(|chunk| chunk.gives_way) {
+                true => {
+                    stays = section.chunks.iter().filter(|chunk| !chunk.gives_way).cloned().collect();
+                    &stays
+                }
+                false => &section.chunks,
+            };
+            let parts: Vec<MetPart> = chunks_here
                 .par_chunks(CHUNKS_PER_PART)
                 .map(|chunks| MetPart::of(chunks, source, &reach, kind))
                 .collect();

@@ -291,7 +291,7 @@ mod tests {
             let hiding = hiding(&shape, terrain, &view);
             let bounds = Aabb { min: low, max: low + size.abs() };
             let cell = if has_terrain { NO_CELL } else { 0 };
-            let chunk = Chunk { range: 0..3, bounds, cell, details: 1, translucency: Translucency::None, is_around: false };
+            let chunk = Chunk { range: 0..3, bounds, cell, details: 1, translucency: Translucency::None, is_around: false, gives_way: false };
             let volume = shape.volume().expect("a volume");
             let acts = terrain || !has_terrain;
             let corners = bounds.corners().into_iter();

@@ -187,16 +187,27 @@ impl MapReading {
     }
 }
 
-/// The light block; `maps`: the eyes of sun and sky where there is a map of what they see; `fade`: that of the plain ground.
+/// What is around a city.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surround {
+    /// Whose light it has.
+    pub look: StyleLook,
+    /// What is behind it.
+    pub background: Background,
+    /// How its plain ground fades, where it has one.
+    pub fade: Option<Fade>,
+}
+
+/// The light block; `maps`: the eyes of sun and sky where there is a map of what they see.
 pub fn uniform(
     sun: &Sun,
     light: &LightSample,
-    (look, background): (StyleLook, Background),
+    around: &Surround,
     maps: [Option<&SunEye>; 2],
-    fade: Option<&Fade>,
     eye: DVec3,
     scene_radius: f64,
 ) -> layout::Light {
+    let Surround { look, background, fade } = *around;
     let SkyLight { sun: direct, sky, ground, zenith, horizon } = *look.light();
     // Below the horizon only a blue dusk is left.
     let day = ((sun.elevation.to_degrees() + 4.0) / 10.0).clamp(0.0, 1.0) as f32;

@@ -8,7 +8,8 @@ use crate::{
         cities::Cities,
         eye::PictureTile,
         invokers::Invokers,
-        layout, light,
+        layout,
+        light::{self, Surround},
         plan::FramePlan,
         resource::{
             bindings::{all_of, group, one_of, whole},
@@ -143,18 +144,8 @@ impl Shared {
         let eye = input.view.camera.eye;
         let maps = [plan.sun.as_ref(), plan.sky.as_ref()];
         stale |= self.view.sync(gpu, &[plan.view_uniform()])?;
-        stale |= self.light.sync(
-            gpu,
-            &[light::uniform(
-                &input.sun,
-                &plan.light,
-                (input.look, input.background),
-                maps,
-                plan.fade.as_ref(),
-                eye,
-                plan.radius,
-            )],
-        )?;
+        let around = Surround { look: input.look, background: input.background, fade: plan.fade };
+        stale |= self.light.sync(gpu, &[light::uniform(&input.sun, &plan.light, &around, maps, eye, plan.radius)])?;
         if self.solids_of.as_ref().is_none_or(|before| !Arc::ptr_eq(before, input.solids)) {
             stale |= self.solids.sync(gpu, &input.solids.words)?;
             self.solid_corners.sync(gpu, &input.solids.corners)?;

@@ -38,6 +38,15 @@ pub struct SurfaceTable<'a> {
 }
 
 impl<'a> SurfaceTable<'a> {
+    /// An empty table of what is shown.
+    pub fn of(shown: &Shown<'a>, textures: &'a Textures, shells: &'a Shells) -> Self {
+        let table = Self::new(shown.model, textures, shells);
+        match shown.ground {
+            Some(_) => Self { ground: ground_color(shown, textures), ..table },
+            None => table,
+        }
+    }
+
     /// An empty table.
     pub fn new(model: &'a CityModel, textures: &'a Textures, shells: &'a Shells) -> Self {
         let ground = palette::linear_bytes(palette::PLAIN_GROUND);
@@ -142,7 +151,7 @@ fn plain_ground(color: [f32; 3], normal: u32) -> layout::Surface {
 }
 
 /// The colour of the plain ground beside what is shown, linear light: halfway to the mean of terrain and land, where they have colours.
-pub(super) fn ground_color(shown: &Shown, textures: &Textures) -> [f32; 3] {
+fn ground_color(shown: &Shown, textures: &Textures) -> [f32; 3] {
     let plain = palette::linear_bytes(palette::PLAIN_GROUND);
     let model = shown.model;
     let (mut sum, mut area) = ([0.0_f64; 3], 0.0);

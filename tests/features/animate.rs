@@ -195,7 +195,7 @@ fn a_frame_with_a_history_does_not_depend_on_which_frames_are_drawn() {
             let scene = film.scene(*frame).unwrap();
             let request = Request {
                 size: scene.figure.size,
-                samples: scene.figure.samples(),
+                samples: 1,
                 transparent: false,
                 aovs: Default::default(),
                 statistics: false,

@@ -138,7 +138,7 @@ fn least_sine(direction: DVec3, [a, b]: [DVec3; 2]) -> f64 {
 /// Where the sky is seen, its glow is known by thought: a building may come close to a ray anywhere along it, behind many others.
 #[test]
 fn a_glow_is_as_strong_as_rays_come_close_to_any_of_many_buildings() {
-    let text = "veduta = 1\n[city]\nfiles = [\"builtin:town\"]\n[camera]\neye = [86, -58, 60]\ntarget = [-5, 5, 6]\nfov_deg = 45\n\
+    let text = "veduta = 1\n[city]\nfiles = [\"builtin:town\"]\nground = false\n[camera]\neye = [86, -58, 60]\ntarget = [-5, 5, 6]\nfov_deg = 45\n\
                 [sun]\nshadows = false\n[[lens]]\nname = \"a\"\nkind = \"color\"\nbody = \"halo\"\n\
                 shape = { kind = \"objects\", types = [\"Building\"] }\n";
     let scene = parse(text, "glow.toml", &Options::default()).unwrap_or_else(|error| panic!("{error}"));

@@ -306,7 +306,8 @@ fn characters_that_no_font_has_are_told_of_boards_too() {
 #[test]
 fn over_nothing_a_board_is_all_there_is() {
     let folder = Folder::new("nothing");
-    let scene = folder.scene(&four("a", [8.0, 12.0, 4.0], &format!("{PLAIN}call_out = {{ height_m = 30 }}")));
+    let mut scene = folder.scene(&four("a", [8.0, 12.0, 4.0], &format!("{PLAIN}call_out = {{ height_m = 30 }}")));
+    scene.city.ground = false;
     let mut studio = of_scene(&scene);
     let asked = Request { transparent: true, ..request(SIZE) };
     let picture = figure::draw(&mut studio, &scene, &asked).unwrap();

@@ -11,9 +11,9 @@ use crate::city::ground::{BELOW_M, field::HeightField};
 /// How far triangles may be from the heights, metres: less than the ground lies below what stands on it.
 const NEAR_M: f64 = 0.75 * BELOW_M;
 /// How much farther each ring is than the one before, ...
-const FARTHER: f64 = 1.7;
+const FARTHER: f64 = 2.0;
 /// ... and how many points it has.
-const RING_POINTS: usize = 64;
+const RING_POINTS: usize = 32;
 
 /// Triangles, counter-clockwise from above.
 pub struct Net {
@@ -76,9 +76,12 @@ impl Net {
     /// mean.
     fn surround(&mut self, field: &HeightField, border: &[u32], reach: f64) {
         let half = 0.5 * field.cells as f64 * field.step;
-        let mean = border.iter().map(|&i| self.points[i as usize].z).sum::<f64>() / border.len() as f64;
+        let heights = || border.iter().map(|&i| self.points[i as usize].z);
+        let mean = heights().sum::<f64>() / border.len() as f64;
+        let is_level = heights().all(|height| (height - mean).abs() < NEAR_M);
         let mut numbers = border.to_vec();
-        let mut away = (reach / 24.0).max(4.0 * field.step).min(reach);
+        // What is level all around takes one ring.
+        let mut away = if is_level { reach } else { (reach / 16.0).max(4.0 * field.step).min(reach) };
         loop {
             for k in 0..RING_POINTS {
                 let (offset, share) = (ring_point(k, half, away), (away / reach).powi(2));

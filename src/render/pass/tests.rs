@@ -134,8 +134,15 @@ impl Asked {
             furniture: &self.furniture,
             most_triangles: None,
         };
-        let chunks =
-            [Chunk { range: 0..36, bounds, cell: 0, details: 1, translucency: Translucency::None, is_around: false }];
+        let chunks = [Chunk {
+            range: 0..36,
+            bounds,
+            cell: 0,
+            details: 1,
+            translucency: Translucency::None,
+            is_around: false,
+            gives_way: false,
+        }];
         let sections = vec![SectionFacts { kind: SectionKind::Plain, is_smooth: false, is_read: false }];
         let facts = CityFacts {
             bounds,
