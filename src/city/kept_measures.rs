@@ -18,6 +18,8 @@ pub struct Face {
 /// What was measured of a city so far.
 #[derive(Debug, Default)]
 pub struct Measured {
+    /// Of each object whether it is shown by default.
+    pub(super) shown: OnceLock<Vec<bool>>,
     /// What triangles say.
     pub(super) faces: OnceLock<OfFaces>,
     /// Of each object the ground that it covers, square metres, NaN where it covers none.

@@ -82,6 +82,11 @@ impl CityModel {
         None
     }
 
+    /// Of each object whether it is shown by default.
+    pub fn shown_objects(&self) -> &[bool] {
+        self.measured.shown.get_or_init(|| is_shown(self, &shown_geometries(self, None)))
+    }
+
     /// All faces of what is shown by default.
     pub fn measured_faces(&self) -> &[Face] {
         &self.measured.faces.get_or_init(|| of_faces(self)).faces

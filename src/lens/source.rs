@@ -1,9 +1,7 @@
 //! Where the values of thematic colours come from: attributes of objects, of their semantic surfaces, or measures.
 
-use rustc_hash::FxHashSet;
-
 use crate::{
-    city::{CityModel, StringId, SurfaceDetail, Value, shown::shown_geometries},
+    city::{CityModel, StringId, SurfaceDetail, Value},
     lens::{
         measures::{self, Measure},
         nearest::did_you_mean,
@@ -119,7 +117,7 @@ pub fn hint_for(model: &CityModel, name: &str) -> String {
 
 /// Objects that are drawn by default, or all where none has a geometry.
 pub fn drawn(model: &CityModel) -> impl Iterator<Item = u32> {
-    let shown: FxHashSet<u32> =
-        shown_geometries(model, None).iter().map(|g| model.geometries[*g as usize].object).collect();
-    (0..model.objects.len() as u32).filter(move |object| shown.is_empty() || shown.contains(object))
+    let shown = model.shown_objects();
+    let is_any = shown.contains(&true);
+    (0..model.objects.len() as u32).filter(move |object| !is_any || shown.get(*object as usize) != Some(&false))
 }
