@@ -19,16 +19,16 @@ pub const LEVEL_DEG: f64 = 1.0;
 /// Cosine of the slope from which on a face is a wall and no roof: 75°.
 const STEEPEST_ROOF: f64 = 0.259;
 
-/// What is measured of objects.
+/// What is measured of objects; terrain, water, roads and land use have nothing of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OfObject {
     /// From the lowest to the highest vertex, metres.
     Height,
-    /// Of the ground that it covers seen from above, square metres; terrain, water, roads and land use have none.
+    /// Of the ground that it covers seen from above, square metres.
     Area,
     /// What its faces enclose, cubic metres; none where they are not closed.
     Volume,
-    /// Of the faces that look up and are no walls, the mean by area, degrees: 0 is level; of what has an [`Self::Area`] at most.
+    /// Of the faces that look up and are no walls, the mean by area, degrees: 0 is level.
     Slope,
     /// Where most of the area of these faces looks, of those that are not level, degrees clockwise from north.
     Azimuth,
@@ -57,14 +57,14 @@ impl CityModel {
         if what == OfObject::Azimuth {
             return found.azimuths.clone();
         }
-        let one = |sums: &Sums| match what {
-            _ if sums.low > sums.high => f64::NAN,
+        let one = |(object, sums): (usize, &Sums)| match what {
+            _ if sums.low > sums.high || self.objects[object].class.is_ground() => f64::NAN,
             OfObject::Height => sums.high - sums.low,
             OfObject::Volume if sums.edges == 0 && sums.volume != 0.0 => sums.volume.abs() / 6.0,
             OfObject::Slope if sums.roof > 0.0 => sums.sloped / sums.roof,
             _ => f64::NAN,
         };
-        found.sums.iter().map(one).collect()
+        found.sums.iter().enumerate().map(one).collect()
     }
 
     /// An attribute of a semantic surface, or of the nearest that it is part of: of one with number `detail` ([`CityModel::details`]).
@@ -139,7 +139,7 @@ fn of_faces(model: &CityModel) -> OfFaces {
                 let doubled = (b - a).cross(c - a);
                 let area = 0.5 * doubled.length();
                 let upward = doubled.z / doubled.length().max(f64::MIN_POSITIVE);
-                let is_roof = upward >= STEEPEST_ROOF && has_roof(model, geometry.object);
+                let is_roof = upward >= STEEPEST_ROOF;
                 let one = Sums {
                     low: places.iter().map(|p| p.z).fold(f64::INFINITY, f64::min),
                     high: places.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max),
@@ -167,18 +167,14 @@ fn of_faces(model: &CityModel) -> OfFaces {
     OfFaces { sums, faces, azimuths }
 }
 
-/// Whether what looks up of an object is a roof: it is no ground.
-fn has_roof(model: &CityModel, object: u32) -> bool {
-    !model.objects[object as usize].class.is_ground()
-}
-
 /// Of each object the direction in which most of the area of its sloped roofs looks, to the degree that a face has; equal areas: the first by its
 /// normal.
 fn azimuths(model: &CityModel, faces: &[Face], wholes: &[(u32, u32)]) -> Vec<f64> {
     let mut by_degree: FxHashMap<(u32, u32), (f64, f64)> = FxHashMap::default();
     let mut owners: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
     wholes.iter().for_each(|(part, whole)| owners.entry(*part).or_default().push(*whole));
-    for face in faces.iter().filter(|face| has_roof(model, face.object)) {
+    let is_ground = |face: &&Face| model.objects[face.object as usize].class.is_ground();
+    for face in faces.iter().filter(|face| !is_ground(face)) {
         let normal = decode_normal(face.normal);
         let Some(azimuth) = azimuth_deg(normal).filter(|_| normal.z >= STEEPEST_ROOF) else { continue };
         for owner in owners.get(&face.object).into_iter().flatten().chain([&face.object]) {
@@ -278,7 +274,7 @@ mod tests {
         let volume = 60.0 * 5.0 + 0.5 * 6.0 * 4.0 * 10.0;
         assert!(close(of(&model, 1), [9.0, 60.0, volume, slope, 270.0]), "{:?}", of(&model, 1));
         assert!(close(of(&model, 2), [9.0, 60.0, f64::NAN, slope, 270.0]), "{:?}", of(&model, 2));
-        assert!(close(of(&model, 3), [0.0, f64::NAN, f64::NAN, f64::NAN, f64::NAN]), "{:?}", of(&model, 3));
+        assert!(close(of(&model, 3), [f64::NAN; 5]), "{:?}", of(&model, 3));
         // A box has six faces, the house seven.
         let faces = |object: u32| model.measured_faces().iter().filter(|f| f.object == object).count();
         assert_eq!([0, 1, 2, 3].map(faces), [6, 7, 6, 1]);

@@ -61,7 +61,7 @@ pub static MEASURES: [Measure; 8] = [
         "geometry:area",
         "Footprint",
         "m²",
-        "Ground that an object covers, seen from above; terrain, water, roads and land use have none.",
+        "Ground that an object covers, seen from above.",
         Measured::Object(OfObject::Area),
     ),
     row(
@@ -75,7 +75,7 @@ pub static MEASURES: [Measure; 8] = [
         "geometry:slope",
         "Roof slope",
         "°",
-        "Of an object's faces that look up and are less steep than 75°, the mean by area; 0 is level. Terrain, water, roads and land use have none.",
+        "Of an object's faces that look up and are less steep than 75°, the mean by area; 0 is level.",
         Measured::Object(OfObject::Slope),
     ),
     row(

@@ -170,7 +170,8 @@ fn ramps(out: &mut String) {
 
 /// What is measured, for `docs/effects.md`.
 fn measures(out: &mut String) {
-    *out += "Measures of the city's geometry, of what is shown by default; a file's attribute of such a name is meant before them:\n\n\
+    *out += "Measures of the city's geometry, of what is shown by default; a file's attribute of such a name is meant before them. Terrain, \
+             water, roads and land use have none of `geometry:`:\n\n\
              | attribute | unit | meaning |\n| --- | --- | --- |\n";
     for measure in &MEASURES {
         let _ = writeln!(out, "| `{}` | {} | {} |", measure.name, measure.unit, measure.doc);
