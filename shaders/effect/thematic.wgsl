@@ -25,9 +25,17 @@
 //! [[parameter]]
 //! name = "ramp"
 //! type = "word"
-//! words = ["viridis", "cividis", "purple-orange"]
-//! default = "viridis"
-//! doc = "Colours of numbers, low to high."
+//! words = ["viridis", "cividis", "batlow", "lipari", "lajolla", "acton", "devon", "blues", "greens", "reds", "blue-purple",
+//!     "yellow-blue", "vik", "roma", "broc", "purple-orange", "red-blue", "brown-teal", "purple-green", "roma-o", "bam-o", "vik-o",
+//!     "okabe-ito", "tol-bright", "tol-muted", "dark2", "paired"]
+//! without = "viridis for numbers, roma-o for directions, okabe-ito for texts"
+//! doc = "Colours, low to high, or one for each category."
+//!
+//! [[parameter]]
+//! name = "colors"
+//! type = "colors"
+//! without = "the ramp's"
+//! doc = "Own colours in place of a ramp's, low to high: one for each class where there are as many, else places along them; or one for each category."
 //!
 //! [[parameter]]
 //! name = "reverse"
@@ -38,9 +46,9 @@
 //! [[parameter]]
 //! name = "scale"
 //! type = "word"
-//! words = ["continuous", "equal", "quantile"]
+//! words = ["continuous", "equal", "quantile", "natural", "deviation"]
 //! default = "continuous"
-//! doc = "Numbers: a smooth ramp, classes of equal width, or classes of equally many objects."
+//! doc = "Numbers: a smooth ramp; classes of equal width, or of equally many objects; natural breaks (Fisher, Jenks); or standard deviations from the mean."
 //!
 //! [[parameter]]
 //! name = "classes"
@@ -48,7 +56,7 @@
 //! range = [2, 12]
 //! default = 5
 //! unit = "classes"
-//! doc = "How many classes."
+//! doc = "How many classes; fewer where there are fewer values. Where own colours are given and this is not, as many as these."
 //!
 //! [[parameter]]
 //! name = "breaks"
@@ -95,15 +103,88 @@
 //! type = "color"
 //! default = "#d55e00"
 //! doc = "Colour of numbers at or above `threshold`."
+//!
+//! [[parameter]]
+//! name = "relief"
+//! type = "number"
+//! range = [0, 4]
+//! default = 1
+//! doc = "How much light moves lightness: 0 not at all, 1 as far as no class is taken for another; beyond that classes may be."
+//!
+//! [[parameter]]
+//! name = "counts"
+//! type = "boolean"
+//! default = false
+//! doc = "Whether the legend says how many objects each class has."
+//!
+//! [[parameter]]
+//! name = "histogram"
+//! type = "boolean"
+//! default = false
+//! doc = "Whether the legend of a smooth ramp shows how many objects there are along it."
 
-// The host colours the objects: one sRGB colour each, from `p.first` on.
+const OF_OBJECTS = 0u;
+const OF_SLOPES = 1u;
+const STEPS = 1440u;            // of slopes and directions; the colour of no value comes after them
+const LEVEL = 0.017452406;      // sine of the slope below which a face looks in no direction
+
+// Which step the slope or the direction of a face is.
+fn step_of_face(what: u32, number: u32) -> u32 {
+    if is_section(number) {
+        return STEPS;
+    }
+    let normal = decode_normal(surface_at(number).normal);
+    let level = length(normal.xy);
+    let slope = degrees(atan2(level, abs(normal.z))) * (1.0 / 90.0);
+    let around = degrees(atan2(normal.x, normal.y)) * (1.0 / 360.0);
+    let share = select(around - floor(around), slope, what == OF_SLOPES);
+    let step = min(u32(share * f32(STEPS)), STEPS - 1u);
+    return select(step, STEPS, what != OF_SLOPES && level < LEVEL);
+}
+
+const OF_FACES = 3u;
+const HALVINGS = 24;            // of the faces of an object: more than there are of a city
+
+// The colour of a face in the table that begins there.
+fn color_of_face(first: u32, object: u32, number: u32) -> u32 {
+    if is_section(number) {
+        return object_values[first + 1u];
+    }
+    let normal = surface_at(number).normal;
+    let faces = first + object_values[first];
+    let end = object_values[first + 3u + object];
+    var low = object_values[first + 2u + object];
+    var high = end;
+    for (var i = 0; i < HALVINGS; i++) {
+        let middle = (low + high) / 2u;
+        let is_above = low < high && object_values[faces + 2u * middle] < normal;
+        low = select(low, middle + 1u, is_above);
+        high = select(middle, high, is_above || low >= high);
+    }
+    if low < end && object_values[faces + 2u * low] == normal {
+        return object_values[faces + 2u * low + 1u];
+    }
+    return object_values[first + 1u];
+}
+
+// The host says from `p.first` on what light does, what is coloured, and the colours, sRGB: of objects, or of steps.
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     if point.object == NO_OBJECT {
         return point.shade * vec3f(0.72);
     }
-    let code = object_values[p.first + point.object];
+    let what = object_values[p.first + 1u];
+    var code = 0u;
+    switch what {
+        case OF_OBJECTS: {
+            code = object_values[p.first + 2u + point.object];
+        }
+        case OF_FACES: {
+            code = color_of_face(p.first + 2u, point.object, point.surface);
+        }
+        default: {
+            code = object_values[p.first + 2u + step_of_face(what, point.surface)];
+        }
+    }
     let legend = linear_from_srgb(unpack4x8unorm(code).rgb);
-    let lab = oklab_from_linear(legend);
-    let lightness = lab.x * mix(0.62, 1.06, clamp(point.shade, 0.0, 1.0));
-    return max(linear_from_oklab(vec3f(lightness, lab.yz)), vec3f(0.0));
+    return shown_under_light(legend, bitcast<f32>(object_values[p.first]), point.shade);
 }

@@ -75,3 +75,33 @@ fn linear_from_oklab(lab: vec3f) -> vec3f {
         dot(lab, vec3f(1.0, -0.1055613458, -0.0638541728)),
         dot(lab, vec3f(1.0, -0.0894841775, -1.2914855480))));
 }
+
+const CHROMA_STEPS: i32 = 9;            // halvings by which the chroma that a screen has is found
+const GAMUT_SLACK: f32 = 1e-5;          // what rounding makes of the colours at the border
+
+fn is_in_gamut(c: vec3f) -> bool {
+    return all(c >= vec3f(-GAMUT_SLACK)) && all(c <= vec3f(1.0 + GAMUT_SLACK));
+}
+
+// Linear light 0..1 of an OKLab colour: of its lightness and hue, and of its chroma as much as a screen has. Its twin is tested.
+fn linear_in_gamut(lab: vec3f) -> vec3f {
+    let whole = linear_from_oklab(lab);
+    if is_in_gamut(whole) {
+        return clamp(whole, vec3f(0.0), vec3f(1.0));
+    }
+    var low = 0.0;
+    var step = 0.5;
+    for (var i = 0; i < CHROMA_STEPS; i++) {
+        low += select(0.0, step, is_in_gamut(linear_from_oklab(vec3f(lab.x, (low + step) * lab.yz))));
+        step *= 0.5;
+    }
+    return clamp(linear_from_oklab(vec3f(lab.x, low * lab.yz)), vec3f(0.0), vec3f(1.0));
+}
+
+// A colour that means something, linear, in light of 0 (none) to 1: its lightness goes by `relief` to either side of its own, hue and chroma
+// stay. Its twin is tested.
+fn shown_under_light(color: vec3f, relief: f32, shade: f32) -> vec3f {
+    let lab = oklab_from_linear(color);
+    let lightness = clamp(lab.x + relief * (2.0 * clamp(shade, 0.0, 1.0) - 1.0), 0.0, 1.0);
+    return linear_in_gamut(vec3f(lightness, lab.yz));
+}

@@ -5,7 +5,7 @@ use eframe::egui::{self, Key, RichText, Ui};
 use crate::{
     app::{document::Document, finder::text_of, new_lens::quoted, state::Window},
     city::{Attribute, CityModel},
-    lens::{Lens, Region, chosen::Choice},
+    lens::{Lens, Region, chosen::Choice, measures::MEASURES},
     scene::PiecePlace,
 };
 
@@ -199,13 +199,9 @@ fn width_of(ui: &Ui, text: &str) -> f32 {
     ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::WHITE).size().x.ceil() + 1.0
 }
 
-/// Colours by an attribute, as an effect on the context.
+/// Colours by an attribute or a measure, as an effect on the context.
 fn colors(window: &mut Window, ui: &mut Ui, names: &[String]) {
     let label = ui.heading("Colour by").id;
-    if names.is_empty() {
-        ui.weak("No object of this city has an attribute.");
-        return;
-    }
     let effect = window.document.scene().style.effects.iter().find(|used| used.effect == "thematic");
     let now = effect.and_then(|used| used.text("attribute")).map(str::to_owned);
     let mut wanted = None;
@@ -216,9 +212,10 @@ fn colors(window: &mut Window, ui: &mut Ui, names: &[String]) {
             if ui.selectable_label(now.is_none(), "nothing").clicked() {
                 wanted = Some(None);
             }
-            for name in names {
-                if ui.selectable_label(now.as_ref() == Some(name), name).clicked() {
-                    wanted = Some(Some(name.clone()));
+            let measures = MEASURES.iter().map(|measure| measure.name);
+            for name in names.iter().map(String::as_str).chain(measures) {
+                if ui.selectable_label(now.as_deref() == Some(name), name).clicked() {
+                    wanted = Some(Some(name.to_owned()));
                 }
             }
         })

@@ -3,6 +3,7 @@
 pub mod build;
 pub mod builtin;
 pub mod cityjson;
+pub mod closed;
 pub mod coplanar;
 pub mod crs;
 pub mod derived;
@@ -11,7 +12,9 @@ pub mod facts;
 pub mod gltf;
 pub mod ground;
 pub mod json;
+pub mod kept_measures;
 pub mod load;
+pub mod measured;
 mod memory;
 pub mod model;
 pub mod obj;

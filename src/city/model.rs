@@ -21,7 +21,7 @@ use glam::{DVec3, IVec3};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::{
-    city::{strings::Strings, warning::Warnings},
+    city::{kept_measures::Measured, strings::Strings, warning::Warnings},
     geom::{Aabb, plane::Plane},
 };
 
@@ -96,6 +96,8 @@ pub struct CityModel {
     pub objects: Vec<CityObject>,
     /// Finds them by their ids.
     pub ids: Ids,
+    /// What was measured of its geometry so far.
+    pub measured: Measured,
     /// Attributes of objects and semantic surfaces; ranges of it belong to them.
     pub attributes: Vec<Attribute>,
     /// Geometries, grouped by object in object order, LoD ascending as read.

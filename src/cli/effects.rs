@@ -13,8 +13,12 @@ use crate::{
         report::wrap,
         terminal::{self, Paint},
     },
+    lens::{
+        measures::{MEASURES, Measure},
+        ramp::{RAMPS, Ramp, RampKind},
+    },
     shader::{
-        effect::{self, EffectDefinition, ParameterDefinition},
+        effect::{self, EffectDefinition, ParameterDefinition, PerObject},
         effect_file::{checked, redefined},
     },
 };
@@ -131,13 +135,36 @@ fn json_of(effect: &EffectDefinition) -> Value {
             "doc": p.doc,
         })
     };
-    json!({
+    let mut all = json!({
         "name": effect.name,
         "kind": effect.kind.name(),
         "spec": effect.spec,
         "doc": effect.doc,
         "parameters": effect.parameters.iter().map(parameter).collect::<Vec<_>>(),
-    })
+    });
+    if effect.objects == Some(PerObject::Colors) {
+        let ramp = |row: &Ramp| json!({ "name": row.name, "kind": row.kind.name(), "by": row.source });
+        let measure = |row: &Measure| json!({ "name": row.name, "unit": row.unit, "doc": row.doc });
+        all["ramps"] = RAMPS.iter().map(ramp).collect();
+        all["measures"] = MEASURES.iter().map(measure).collect();
+    }
+    all
+}
+
+/// The ramps by kind, and what is measured, for terminals.
+fn text_of_colors(paint: Paint, width: usize) -> String {
+    let mut text = String::new();
+    for kind in RampKind::ALL {
+        let names: Vec<&str> = RAMPS.iter().filter(|row| row.kind == kind).map(|row| row.name).collect();
+        text += &format!("    {}\n", paint.strong(&format!("{} ramps", kind.name())));
+        wrap(&names.join(", "), width).iter().for_each(|line| text += &format!("        {line}\n"));
+    }
+    text += &format!("    {}\n", paint.strong("measures, as attributes"));
+    for measure in &MEASURES {
+        let line = format!("{} ({}): {}", measure.name, measure.unit, measure.doc);
+        wrap(&line, width).iter().for_each(|line| text += &format!("        {line}\n"));
+    }
+    text
 }
 
 fn text_of(effect: &EffectDefinition, paint: Paint) -> String {
@@ -155,6 +182,9 @@ fn text_of(effect: &EffectDefinition, paint: Paint) -> String {
         for line in wrap(&takes, WIDTH - 8) {
             text += &format!("        {}\n", paint.faint(&line));
         }
+    }
+    if effect.objects == Some(PerObject::Colors) {
+        text += &text_of_colors(paint, WIDTH - 8);
     }
     text
 }

@@ -2,9 +2,11 @@
 
 use crate::{
     city::CityModel,
+    figure::ticks::number_text,
     lens::{
         EffectUse,
         color::Srgb,
+        source::OF_SURFACES,
         thematic::{LegendKind, Rule, ThematicScale},
     },
     scene::Scene,
@@ -50,8 +52,9 @@ pub fn legends(scene: &Scene, model: &CityModel, seen: &[bool]) -> Vec<Legend> {
     let mut legends: Vec<Legend> = Vec::new();
     for (used, lens) in context.chain(of_lenses).filter(|(used, _)| is_thematic(used)) {
         let Ok(scale) = ThematicScale::new(model, used) else { continue };
-        let title = used.text("label").unwrap_or(&scale.attribute).to_owned();
-        let unit = used.text("unit").map(str::to_owned);
+        let named = scale.attribute.strip_prefix(OF_SURFACES).unwrap_or(&scale.attribute);
+        let title = used.text("label").or(scale.measure.map(|m| m.label)).unwrap_or(named).to_owned();
+        let unit = used.text("unit").or(scale.measure.map(|m| m.unit)).map(str::to_owned);
         let mark = lens.map(|lens| (lens.name.clone(), lens.color));
         match legends.iter_mut().find(|l| l.scale == scale && l.title == title && l.unit == unit) {
             // What holds in the context holds everywhere.
@@ -90,6 +93,12 @@ fn is_thematic(used: &EffectUse) -> bool {
 }
 
 impl Legend {
+    /// How high the columns of a histogram along the bar are, the highest 1; none where nobody asked.
+    pub fn columns(&self) -> Vec<f32> {
+        let most = self.scale.histogram.iter().copied().max().unwrap_or(0).max(1) as f32;
+        self.scale.histogram.iter().map(|count| *count as f32 / most).collect()
+    }
+
     /// Ends of the ramp where there is one to draw as a bar.
     pub fn bar(&self) -> Option<(f64, f64)> {
         match self.scale.rule {
@@ -98,12 +107,16 @@ impl Legend {
         }
     }
 
-    /// The lines beside or below the bar: classes, categories, threshold, no data.
+    /// The lines beside or below the bar: classes, categories, threshold, no data. What has no value is counted, the others where that is asked
+    /// for.
     pub fn rows(&self) -> Vec<Row> {
         let bar = self.bar().is_some();
         let mut rows: Vec<Row> = Vec::new();
         for entry in self.scale.legend.iter().filter(|e| !(bar && e.kind == LegendKind::Value)) {
-            let row = Row { color: entry.color, label: entry.label.clone(), is_kept: entry.kind != LegendKind::Value };
+            let count = || format!("{} ({})", entry.label, number_text(entry.count as f64, 1.0));
+            let is_counted = self.scale.counts || entry.kind == LegendKind::NoData;
+            let label = if is_counted { count() } else { entry.label.clone() };
+            let row = Row { color: entry.color, label, is_kept: entry.kind != LegendKind::Value };
             // A ramp of one value has two ends of one name.
             if rows.last() != Some(&row) {
                 rows.push(row);
@@ -187,8 +200,36 @@ mod tests {
         let ramp = of(&[("attribute", "yearOfConstruction")]);
         assert!(ramp.bar().is_some_and(|(min, max)| min < max));
         assert!(ramp.rows().iter().all(|row| row.is_kept));
+        let no_data = ramp.scale.legend.iter().find(|e| e.kind == LegendKind::NoData).expect("some have none");
+        assert!(ramp.rows().iter().any(|row| row.label == format!("no data ({})", no_data.count)));
+        assert_eq!(ramp.columns(), [] as [f32; 0]);
         let classes = of(&[("attribute", "yearOfConstruction"), ("scale", "equal")]);
         assert_eq!(classes.bar(), None);
         assert_eq!(classes.rows().iter().filter(|row| !row.is_kept).count(), 5);
+    }
+
+    #[test]
+    fn counts_and_columns_are_those_of_the_objects() {
+        let model = load(&["builtin:town".into()], &LoadOptions::default(), &Quiet).unwrap();
+        let of = |flags: &[&str], parameters: &[(&str, &str)]| {
+            let mut effect = used(parameters);
+            effect.parameters.extend(flags.iter().map(|flag| ((*flag).into(), Parameter::Boolean(true))));
+            let scene = Scene { lenses: vec![lens("a", vec![effect])], ..Scene::default() };
+            legends(&scene, &model, &[true]).remove(0)
+        };
+        let classes = of(&["counts"], &[("attribute", "yearOfConstruction"), ("scale", "natural")]);
+        for (row, entry) in classes.rows().iter().zip(&classes.scale.legend) {
+            assert_eq!(row.label, format!("{} ({})", entry.label, number_text(entry.count as f64, 1.0)));
+        }
+        let ramp = of(&["histogram"], &[("attribute", "yearOfConstruction")]);
+        let with_value: u64 =
+            classes.scale.legend.iter().filter(|e| e.kind == LegendKind::Value).map(|e| e.count).sum();
+        assert_eq!(ramp.scale.histogram.iter().sum::<u64>(), with_value);
+        assert!(ramp.columns().contains(&1.0) && ramp.columns().iter().all(|c| (0.0..=1.0).contains(c)));
+        // What is measured has a name and a unit of its own.
+        let height = of(&[], &[("attribute", "geometry:height")]);
+        assert_eq!((height.title.as_str(), height.unit.as_deref()), ("Height", Some("m")));
+        let named = of(&[], &[("attribute", "geometry:height"), ("label", "Tall"), ("unit", "ft")]);
+        assert_eq!((named.title.as_str(), named.unit.as_deref()), ("Tall", Some("ft")));
     }
 }

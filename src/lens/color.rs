@@ -62,6 +62,31 @@ pub fn linear_from_oklab([lightness, a, b]: [f32; 3]) -> [f32; 3] {
     ]
 }
 
+/// Linear light 0..1 of an OKLab colour: of its lightness and hue, and of its chroma as much as a screen has. Twin of `linear_in_gamut` in
+/// `lib/color.wgsl`.
+pub fn linear_in_gamut([lightness, a, b]: [f32; 3]) -> [f32; 3] {
+    let of_chroma = |share: f32| linear_from_oklab([lightness, share * a, share * b]);
+    let whole = of_chroma(1.0);
+    if is_in_gamut(whole) {
+        return whole.map(|c| c.clamp(0.0, 1.0));
+    }
+    let (mut low, mut step) = (0.0, 0.5);
+    for _ in 0..CHROMA_STEPS {
+        low += if is_in_gamut(of_chroma(low + step)) { step } else { 0.0 };
+        step *= 0.5;
+    }
+    of_chroma(low).map(|c| c.clamp(0.0, 1.0))
+}
+
+/// Halvings by which the chroma that a screen has is found: to a 512th of it.
+const CHROMA_STEPS: u32 = 9;
+/// What rounding makes of the colours at the border.
+const GAMUT_SLACK: f32 = 1e-5;
+
+fn is_in_gamut(linear: [f32; 3]) -> bool {
+    linear.iter().all(|c| (-GAMUT_SLACK..=1.0 + GAMUT_SLACK).contains(c))
+}
+
 /// OKLab of an sRGB colour.
 pub fn oklab_from_srgb(color: Srgb) -> [f32; 3] {
     oklab_from_linear(linear_from_srgb(color))

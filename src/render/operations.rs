@@ -386,11 +386,7 @@ impl Operations {
             None => {}
             Some(PerObject::Colors) => {
                 let scale = in_any(models, |model| ThematicScale::new(model, effect))?;
-                let colors = models.iter().flat_map(|model| scale.object_colors(model));
-                self.object_values.extend(colors.map(|c| {
-                    let [r, g, b] = c.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8);
-                    u32::from_le_bytes([r, g, b, 255])
-                }));
+                self.object_values.extend(scale.for_shader(models));
                 floats.push(first_value);
             }
             Some(what @ (PerObject::Sights | PerObject::Footprints)) => {

@@ -7,6 +7,7 @@ use crate::{
         chosen::{absent, absent_types},
         nearest::did_you_mean,
         rendering::Case,
+        source::is_known,
         thematic::{attribute_names, sentinels},
     },
     scene::{
@@ -44,7 +45,8 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
         for (i, used) in effects.iter().enumerate() {
             let Some(attribute) = used.text("attribute") else { continue };
             let names = names.get_or_insert_with(|| attribute_names(model));
-            if !names.contains(&attribute) {
+            let is_measured = used.effect == "thematic" && is_known(model, attribute);
+            if !names.contains(&attribute) && !is_measured {
                 let hint = did_you_mean(attribute, names.iter().copied());
                 problems.push(SceneProblem {
                     table: table.clone(),

@@ -57,6 +57,7 @@ mod sprites;
 #[path = "../studio/mod.rs"]
 mod studio;
 mod techniques;
+mod thematic;
 mod transparency;
 mod warnings;
 mod wrong_input;

@@ -16,6 +16,8 @@ const SHADOW: Fill = Fill { color: [0.05, 0.07, 0.1], opacity: 0.22 };
 pub const INK: Srgb = [0.1, 0.115, 0.14];
 /// Text beside it.
 pub const QUIET_INK: Srgb = [0.33, 0.355, 0.39];
+/// Columns of a histogram.
+const COLUMN: Srgb = [0.56, 0.585, 0.62];
 /// A line around swatches, so that a pale one does not fade into the card.
 pub(super) const RIM: Fill = Fill { color: [0.0, 0.0, 0.0], opacity: 0.22 };
 
@@ -61,6 +63,8 @@ pub enum Content {
     Swatch { color: Srgb, is_ring: bool, text: String, style: TextStyle, ink: Srgb },
     /// A bar of colours from column to column, and the texts below it with the columns they belong to.
     Bar { colors: Vec<Srgb>, ticks: Vec<(f32, String)>, style: TextStyle },
+    /// Columns of these heights, shares of the line's, side by side over this width, pixels.
+    Columns { heights: Vec<f32>, width: f32 },
 }
 
 /// Makes pieces of cards.
@@ -177,6 +181,7 @@ impl Painter {
                 self.text(text, [start, base(y, line.height, style.size_px)], *style, *ink);
             }
             Content::Bar { colors, ticks, style } => self.bar(colors, ticks, *style, [x, y]),
+            Content::Columns { heights, width } => self.columns(heights, *width, [x, y], line.height),
         }
     }
 
@@ -204,6 +209,17 @@ impl Painter {
             let width = self.setter.width(text, style);
             let left = (at + rim / 2.0 - width / 2.0).clamp(x, (x + colors.len() as f32 - width).max(x));
             self.text(text, [left, bottom + self.px(1.15)], style, QUIET_INK);
+        }
+    }
+
+    /// The least that is not nothing is a pixel high.
+    fn columns(&mut self, heights: &[f32], width: f32, [x, y]: [f32; 2], height: f32) {
+        let base = y + height - self.hairline();
+        let edge = |i: usize| x + (i as f32 / heights.len() as f32 * width).round();
+        for (i, share) in heights.iter().enumerate().filter(|(_, share)| **share > 0.0) {
+            let top = (base - share * (height - self.hairline())).round().min(base - 1.0);
+            let right = (edge(i + 1) - 1.0).max(edge(i) + 1.0);
+            self.panel([edge(i), top], [right, base], Fill::opaque(COLUMN), 0.0, 1.0);
         }
     }
 

@@ -15,6 +15,10 @@ use crate::{
 
 /// Width of a bar of colours where there is room, em.
 const BAR_EM: f32 = 13.0;
+/// Height of a histogram above it, em.
+const HISTOGRAM_EM: f32 = 2.2;
+/// What stands below a bar of directions, and where.
+const COMPASS: [(f32, &str); 5] = [(0.0, "N"), (0.25, "E"), (0.5, "S"), (0.75, "W"), (1.0, "N")];
 /// Lenses a legend names; the others are counted.
 const MOST_LENSES: usize = 3;
 
@@ -108,7 +112,15 @@ fn bar(painter: &mut Painter, legend: &Legend, width: f32, lines: &mut Vec<Line>
     let colors: Vec<Srgb> = (0..columns as usize)
         .map(|i| legend.scale.color_of_number(min + (max - min) * (i as f64 + 0.5) / f64::from(columns)))
         .collect();
-    let ticks = fitting_ticks(painter, [min, max], columns, style);
+    let ticks = match (legend.scale.is_direction(), [min, max]) {
+        (true, [0.0, 360.0]) => COMPASS.map(|(share, name)| (share * columns, name.to_owned())).to_vec(),
+        (_, ends) => fitting_ticks(painter, ends, columns, style),
+    };
+    let heights = legend.columns();
+    if !heights.is_empty() {
+        let height = painter.px(HISTOGRAM_EM) + painter.hairline();
+        lines.push(Line { height, width: columns, content: Content::Columns { heights, width: columns } });
+    }
     lines.push(Line { height: painter.hairline(), width: 0.0, content: Content::Gap });
     let height = painter.bar_height() + painter.px(1.45);
     lines.push(Line { height, width: columns, content: Content::Bar { colors, ticks, style } });

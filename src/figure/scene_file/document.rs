@@ -26,10 +26,10 @@ use crate::{
         test_keys::TESTS,
         trajectory::{TIME, TRAJECTORY},
     },
-    lens::{effect::LOD, rendering::ROWS},
+    lens::{effect::LOD, measures::MEASURES, ramp::RAMPS, rendering::ROWS},
     shader::{
         Blend,
-        effect::{EffectKind, MAX_RAMP, ParameterDefinition, ParameterKind, effects as all_effects},
+        effect::{EffectKind, MAX_RAMP, ParameterDefinition, ParameterKind, PerObject, effects as all_effects},
     },
 };
 
@@ -149,9 +149,34 @@ pub fn effects_reference() -> String {
                 let _ = writeln!(out, "| `{}` | {takes} | {} | {default} | {} |", p.name, p.unit, p.doc);
             }
             out.push('\n');
+            if effect.objects == Some(PerObject::Colors) {
+                ramps(&mut out);
+                measures(&mut out);
+            }
         }
     }
     out
+}
+
+/// The ramps, for `docs/effects.md`.
+fn ramps(out: &mut String) {
+    *out += "Ramps, by kind; the licences of their numbers stand in [NOTICE.md](../src/lens/ramp/NOTICE.md):\n\n\
+             | ramp | kind | by, licence |\n| --- | --- | --- |\n";
+    for row in &RAMPS {
+        let _ = writeln!(out, "| `{}` | {} | {} |", row.name, row.kind.name(), row.source);
+    }
+    out.push('\n');
+}
+
+/// What is measured, for `docs/effects.md`.
+fn measures(out: &mut String) {
+    *out += "Measures of the city's geometry, of what is shown by default; a file's attribute of such a name is meant before them. Terrain, \
+             water, roads and land use have none of `geometry:`:\n\n\
+             | attribute | unit | meaning |\n| --- | --- | --- |\n";
+    for measure in &MEASURES {
+        let _ = writeln!(out, "| `{}` | {} | {} |", measure.name, measure.unit, measure.doc);
+    }
+    out.push('\n');
 }
 
 fn capital(text: &str) -> String {
