@@ -5,7 +5,13 @@ use std::collections::BTreeMap;
 use crate::studio::*;
 use glam::DVec3;
 use veduta::{
-    figure::{self, legend::legends, overlays, scene_file},
+    figure::{
+        self,
+        legend::legends,
+        overlays,
+        paper::{self, Format},
+        scene_file,
+    },
     geom::Shape,
     lens::{EffectUse, Lens, Parameter, ramp::ramp},
     overlay::Rect,
@@ -537,4 +543,30 @@ fn a_scale_bar_measures_what_is_drawn() {
         let seen = (bar.low[0] as i32..).take_while(|x| is_bar(*x)).count() as f32;
         assert!((seen - (bar.high[0] - bar.low[0])).abs() <= 1.5, "{seen} pixels of {bar:?}");
     }
+}
+
+#[test]
+fn what_boards_say_is_text_on_paper() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/call-outs.toml");
+    let mut scene = scene_file::read(&path, &scene_file::Options::for_file(&path)).expect("a scene");
+    scene.figure.set_pixels([640, 360]);
+    let mut studio = of_scene(&scene);
+    let asked = request(1, false);
+    let (picture, page) = paper::draw(&mut studio, &scene, &asked, Format::Svg).expect("a figure");
+    assert!(picture.rgba == studio.render(&scene, &asked).expect("a picture").rgba, "the picture alone");
+    let file = std::env::temp_dir().join(format!("veduta-boards-{}.svg", std::process::id()));
+    page.expect("a page").save(&file, Format::Svg, &Default::default(), None).expect("a file");
+    let svg = std::fs::read_to_string(&file).expect("a file");
+    std::fs::remove_file(&file).expect("a file");
+    for words in [&["Fountain"][..], &["Old ", "Church"], &["Town ", "hall, ", "1893"], &["Windmill"]] {
+        for word in words {
+            let is_there =
+                |line: &str| line.contains(&format!(">{word}</text>")) && line.contains("transform=\"matrix(");
+            assert!(svg.lines().any(is_there), "\"{word}\"");
+        }
+    }
+    assert!(svg.contains(">Along the market</text>"), "of an overlay in the plane of the picture");
+    // The picture, four boards of which one has no image, and the overlay's picture; the lines are areas.
+    assert_eq!((svg.matches("<image ").count(), svg.matches("<path ").count() > 8), (6, true));
+    assert!(figure::draw(&mut studio, &scene, &asked).expect("a picture").rgba != picture.rgba);
 }
