@@ -108,7 +108,7 @@ mod tests {
             assert!((top.height - bounds.max.z).abs() < 1e-6);
             assert_eq!(places.building_around(bounds.center()), Some(number as u32));
             assert_eq!(places.building_around(bounds.center().with_z(bounds.max.z + 1.0)), None);
-            let beside = bounds.center() - DVec3::X * (bounds.size().x + 0.2);
+            let beside = bounds.center() - DVec3::X * (0.5 * bounds.size().x + 2.5);
             assert_eq!(places.building_around(beside), None);
         }
         let far = model.extent().min.truncate() - 30.0;

@@ -24,6 +24,7 @@ mod faults;
 mod floors;
 mod furniture;
 mod gpu;
+mod ground;
 mod handlers;
 mod layers;
 #[path = "../layouts/mod.rs"]
