@@ -20,8 +20,8 @@ pub use check::{SceneProblem, check_against};
 pub use command::{Command, History};
 pub use drawn::Drawn;
 pub use model::{
-    Anchor, CHORD_PX, CitySpec, Column, DEFAULT_DPI, Figure, MM_PER_INCH, PAPER_DPI, Paper, PiecePlace, Poi, PoiPlace,
-    Scene, Style, Sun, TextSize,
+    Anchor, CHORD_PX, CitySpec, Column, DEFAULT_DPI, Figure, MM_PER_INCH, PAPER_DPI, PAPER_TEXT, Paper, PiecePlace,
+    Poi, PoiPlace, Scene, Style, Sun, TextSize,
 };
 pub use overlay::{Layout, Overlay};
 pub use technique::Technique;
