@@ -177,7 +177,7 @@ pub struct Figure {
     pub scale_bar: PiecePlace,
     /// Where an arrow stands that points to the north.
     pub north_arrow: PiecePlace,
-    /// Size of the text (its em); `None`: by the size of the picture.
+    /// Size of the text (its em); `None`: [`PAPER_TEXT`] where there is a `paper`; else by the size of the picture.
     pub text: Option<TextSize>,
     /// Dots per inch of the picture on paper, 10..=2400: what points are measured by, and what the file says. `None`: [`PAPER_DPI`] where
     /// there is a `paper`; else points are those of [`DEFAULT_DPI`], and the file says nothing.
@@ -217,6 +217,9 @@ impl Column {
 
 /// Dots per inch of a figure with a size on paper where it says none.
 pub const PAPER_DPI: f64 = 300.0;
+
+/// Size of the text of a figure with a size on paper where it says none: what journals ask for at least.
+pub const PAPER_TEXT: TextSize = TextSize::Points(7.0);
 
 /// Millimetres of an inch.
 pub const MM_PER_INCH: f64 = 25.4;
@@ -287,9 +290,11 @@ impl Figure {
         self.dpi_of_file().unwrap_or(DEFAULT_DPI)
     }
 
-    /// The size of the text, pixels, where the scene gives it.
+    /// The size of the text, pixels, where the scene gives it, or a size on paper.
     pub fn text_px(&self) -> Option<f64> {
-        self.text.map(|size| size.px(self.dots()))
+        let [least, most] = [*TextSize::RANGE_PX.start(), *TextSize::RANGE_PX.end()];
+        let of_paper = self.paper.map(|_| PAPER_TEXT.px(self.dots()).clamp(least, most));
+        self.text.map(|size| size.px(self.dots())).or(of_paper)
     }
 }
 

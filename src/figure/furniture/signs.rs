@@ -90,16 +90,22 @@ fn seen(view: &View, direction: DVec3) -> DVec2 {
     DVec2::new(direction.dot(view.basis.right), -direction.dot(view.basis.up))
 }
 
+/// How long a level way looks that goes across the picture; 1 where the picture is upright, less where it is turned about the ray.
+fn level_share(view: &View) -> f64 {
+    DVec3::Z.cross(view.basis.up).try_normalize().map_or(1.0, |level| level.dot(view.basis.right).abs())
+}
+
 impl Layout<'_> {
     pub(super) fn scale_bar(&mut self, view: &View) {
         let place = self.figure.scale_bar;
         if !place.is_some() {
             return;
         }
+        let share = level_share(view);
         let is_put = match view.is_orthographic() {
-            true => self.bar_on_card(place, view.pixel_m(0.0)),
+            true => self.bar_on_card(place, view.pixel_m(0.0) / share),
             false => match on_ground(view, place) {
-                Some((at, depth)) => self.bar_on_ground(at, view.pixel_m(depth)),
+                Some((at, depth)) => self.bar_on_ground(at, view.pixel_m(depth) / share),
                 None => {
                     self.left_out.push("scale bar");
                     log::warn!(

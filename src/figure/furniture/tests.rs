@@ -9,7 +9,7 @@ use crate::{
         thematic::{LegendEntry, LegendKind, Rule, ThematicScale},
     },
     render::furniture::{Panel, Piece},
-    scene::TextSize,
+    scene::{Column, Paper, TextSize},
     view::{Camera, Projection},
 };
 
@@ -179,6 +179,11 @@ fn text_follows_the_picture_and_the_scene() {
     assert_eq!(of(TextSize::Points(9.0), Some(300.0)), 37.5);
     assert_eq!(of(TextSize::Points(9.0), Some(72.0)), 9.0);
     assert_eq!(of(TextSize::Points(9.0), None), 12.0);
+    // On paper it is 7 points without being asked.
+    let paper = Some(Paper::Column(Column::Single));
+    let on_paper = Figure { paper, dpi: Some(600.0), ..auto.clone() };
+    assert!((em_px(&on_paper, on_paper.pixels()) - 7.0 / 72.0 * 600.0).abs() < 1e-3);
+    assert_eq!(em_px(&Figure { text: Some(TextSize::Pixels(20.0)), ..on_paper }, [64, 64]), 20.0);
     // What is not given in points does not follow the dots.
     assert_eq!(em_px(&Figure { dpi: Some(300.0), ..auto.clone() }, [1280, 720]), EM_PX);
 }
@@ -251,6 +256,26 @@ fn a_scale_bar_is_as_long_as_it_says() {
         }
     }
     assert_eq!(seen, 24);
+}
+
+#[test]
+fn a_bar_is_true_on_the_ground_in_a_picture_that_is_turned() {
+    let asked = Figure { scale_bar: PiecePlace::Auto, ..Figure::default() };
+    for up in [DVec3::new(0.6, 0.0, 1.0), DVec3::new(-1.0, 0.3, 0.2), DVec3::X] {
+        let camera = Camera::looking(DVec3::new(0.0, -300.0, 250.0), DVec3::ZERO, 1.0);
+        let camera = Camera { up, projection: Projection::Orthographic { height_m: 400.0 }, ..camera };
+        let view = View::new(camera, [1280, 720], &Aabb::EMPTY).unwrap();
+        let (bar, metres) = scale(&lay_out(&asked, &[], &view, &[]).furniture);
+        // The level way that goes across the picture, found by going round.
+        let ways = (0..36_000).map(|i| {
+            let turn = f64::from(i) * std::f64::consts::PI / 36_000.0;
+            let to = metres * DVec3::new(turn.cos(), turn.sin(), 0.0);
+            (view.pixel(to).unwrap() - view.pixel(DVec3::ZERO).unwrap()).truncate()
+        });
+        let across = ways.min_by(|a, b| a.y.abs().total_cmp(&b.y.abs())).unwrap();
+        let long = f64::from(bar.high[0] - bar.low[0]);
+        assert!((long / across.x.abs() - 1.0).abs() < 0.005, "{up}: {long} of {across}");
+    }
 }
 
 #[test]

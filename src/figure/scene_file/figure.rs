@@ -166,7 +166,7 @@ pub const FIGURE_ROWS: &[Row<Figure>] = &[
         key(
             "text_px",
             Kind::Number { min: 6.0, max: 400.0 },
-            "by the size of the picture: 13 at 1280x720",
+            "7 points with `size_mm` or `column`; else by the size of the picture: 13 at 1280x720",
             "pixels",
             "Size of the text of legends and captions.",
             "16.0",
@@ -180,7 +180,7 @@ pub const FIGURE_ROWS: &[Row<Figure>] = &[
         key(
             "text_pt",
             TEXT_PT,
-            "by the size of the picture",
+            "as for `text_px`",
             "points",
             "The same in points, 1/72 inch, in place of `text_px`: N points at `dpi` D are N·D/72 pixels, which are 6 to 400.",
             "9.0",
