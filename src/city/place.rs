@@ -6,7 +6,7 @@ use crate::{
     city::{
         ground::Ground,
         model::{CityModel, ObjectClass},
-        spatial::SpatialIndex,
+        spatial::{Hit, SpatialIndex},
     },
     geom::Ray,
 };
@@ -54,8 +54,19 @@ impl Places<'_> {
     fn highest(&self, at: DVec2, accept: impl Fn(u32) -> bool) -> Option<Top> {
         let above = self.model.extent().max.z + 1.0;
         let ray = Ray { origin: at.extend(above), direction: DVec3::NEG_Z };
-        let hit = self.index.hit_where(self.model, &ray, f64::INFINITY, accept)?;
+        let hit = self.first(&ray, accept)?;
         Some(Top { height: above - hit.t, object: hit.object })
+    }
+
+    /// The nearest hit of a ray on the objects that `accept` takes.
+    fn first(&self, ray: &Ray, accept: impl Fn(u32) -> bool) -> Option<Hit> {
+        let mut first: Option<Hit> = None;
+        self.index.hits(self.model, ray, f64::INFINITY, |hit| {
+            if accept(hit.object) && first.is_none_or(|before| hit.t < before.t) {
+                first = Some(*hit);
+            }
+        });
+        first
     }
 
     /// The building (its root) that an eye is in: its roof is above, and its walls are on three sides at least.
@@ -63,8 +74,7 @@ impl Places<'_> {
         let is_building = |object: u32| self.model.objects[object as usize].class == ObjectClass::Building;
         let seen = |direction: DVec3| {
             let ray = Ray { origin: eye, direction };
-            let hit = self.index.hit_where(self.model, &ray, f64::INFINITY, is_building)?;
-            Some(self.model.root(hit.object))
+            Some(self.model.root(self.first(&ray, is_building)?.object))
         };
         let above = seen(DVec3::Z)?;
         let open = SIDES.iter().filter(|side| seen(**side) != Some(above)).count();

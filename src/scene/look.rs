@@ -81,8 +81,8 @@ const ROWS: [Row; 5] = [
         word: "map",
         effects: &[
             ("flat", &[("relief", Value::Number(0.2)), ("shadows", Value::Number(0.3))]),
-            ("saturate", &[("factor", Value::Number(0.55))]),
-            ("brighten", &[("amount", Value::Number(0.2))]),
+            ("saturate", &[("factor", Value::Number(0.72))]),
+            ("brighten", &[("amount", Value::Number(0.3))]),
             ("edges", &[("color", Value::Color("#6d675c")), ("strength", Value::Number(0.55))]),
         ],
         background: Some([0xf3, 0xf0, 0xe9]),

@@ -2,7 +2,7 @@
 
 use std::{
     path::{Path, PathBuf},
-    process::{Command, Output, Stdio},
+    process::{Output, Stdio},
 };
 
 use crate::studio::{of_scene, with_full_shadows};
@@ -24,6 +24,7 @@ const SCENE: &str = r#"
 veduta = 1
 [city]
 files = ["builtin:square"]
+materials = "file"
 [camera]
 eye = [-75, -110, 62]
 target = [8, 12, 4]

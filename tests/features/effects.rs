@@ -1,6 +1,6 @@
 //! Effects: pictures known by thought, and effect files as their authors meet them.
 
-use std::{collections::BTreeMap, path::PathBuf, process::Command};
+use std::{collections::BTreeMap, path::PathBuf};
 
 use crate::studio::{self, *};
 use glam::DVec3;
