@@ -362,7 +362,7 @@ mod tests {
     }
 
     fn some_answer() -> Answer {
-        Answer { facts: some_facts(), best_views: None, landmarks: None }
+        Answer { facts: some_facts(), at: None, best_views: None, landmarks: None }
     }
 
     #[test]

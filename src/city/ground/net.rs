@@ -10,10 +10,12 @@ use crate::city::ground::{BELOW_M, field::HeightField};
 
 /// How far triangles may be from the heights, metres: less than the ground lies below what stands on it.
 const NEAR_M: f64 = 0.75 * BELOW_M;
+/// Ground that is so level all around, as a share of how far it goes on, takes one ring.
+const LEVEL: f64 = 1e-3;
 /// How much farther each ring is than the one before, ...
 const FARTHER: f64 = 2.0;
 /// ... and how many points it has.
-const RING_POINTS: usize = 32;
+const RING_POINTS: usize = 24;
 
 /// Triangles, counter-clockwise from above.
 pub struct Net {
@@ -78,9 +80,8 @@ impl Net {
         let half = 0.5 * field.cells as f64 * field.step;
         let heights = || border.iter().map(|&i| self.points[i as usize].z);
         let mean = heights().sum::<f64>() / border.len() as f64;
-        let is_level = heights().all(|height| (height - mean).abs() < NEAR_M);
+        let is_level = heights().all(|height| (height - mean).abs() < LEVEL * reach);
         let mut numbers = border.to_vec();
-        // What is level all around takes one ring.
         let mut away = if is_level { reach } else { (reach / 16.0).max(4.0 * field.step).min(reach) };
         loop {
             for k in 0..RING_POINTS {
