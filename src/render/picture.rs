@@ -281,7 +281,7 @@ impl Studio {
         let eye = scene.camera?.eye;
         let is_near = |g: &u32| self.model.geometries[*g as usize].bounds.distance_to(eye) == 0.0;
         // The index takes a moment to make: only where there may be an answer.
-        self.geometries.iter().any(|g| is_near(g)).then(|| self.places().building_around(eye)).flatten()
+        self.geometries.iter().any(is_near).then(|| self.places().building_around(eye)).flatten()
     }
 
     /// Box around the shown city, without the plain ground; empty for an empty city.

@@ -102,7 +102,8 @@ fn samples() {
 #[test]
 fn sprites() {
     let model = load(&["builtin:square".into()], &LoadOptions::default(), &Quiet).unwrap();
-    let mut studio = Studio::new(Gpu::open().unwrap(), Arc::new(model), &CitySpec::default()).unwrap();
+    let mut studio =
+        Studio::new(Gpu::open().unwrap(), Arc::new(model), &CitySpec { ground: false, ..CitySpec::default() }).unwrap();
     let topic = TOPICS.iter().find(|topic| topic.name == "sprites").unwrap();
     let trial = (topic.make)(&mut Stage { studio: &mut studio, size: [160, 90] }).unwrap();
     let knobs = |v: &Variant| v.knobs.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ");

@@ -2,17 +2,16 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::DVec2;
 
 use crate::{
-    geom::Aabb,
     lens::{Class, EffectUse, Lens, Parameter},
     measure::{
         quantity::Quantity,
         stage::{Stage, lens},
         topic::{Exact, Knob, Topic, Trial, Value, Variant},
     },
-    render::picture::RenderError,
+    render::picture::{RenderError, Studio},
     scene::{Scene, Transparency, transparency::SLOTS},
     view::Camera,
 };
@@ -67,24 +66,25 @@ fn scenes(stage: &mut Stage<'_>) -> Result<Vec<(&'static str, Scene)>, RenderErr
         scene.style.effects = vec![used];
         scene
     };
-    let extent = stage.studio.extent();
     let mut of_lens = plain.clone();
     let sphere = stage.sphere_covering(SHARE)?;
     of_lens.lenses = vec![Lens { effects: vec![rule("x-ray", None)], ..lens("lens", sphere, &[]) }];
     Ok(vec![
         ("whole city", of_context(None, rule("transparent", Some(("opacity", 0.25))))),
         ("dense", of_context(None, rule("transparent", Some(("opacity", 0.7))))),
-        ("street", of_context(Some(low(&extent, 0.25, 1.7)), rule("x-ray", None))),
-        ("many layers", of_context(Some(low(&extent, 0.75, 4.0)), rule("transparent", Some(("opacity", 0.05))))),
+        ("street", of_context(Some(low(stage.studio, 0.25, 1.7)), rule("x-ray", None))),
+        ("many layers", of_context(Some(low(stage.studio, 0.75, 4.0)), rule("transparent", Some(("opacity", 0.05))))),
         ("lens", of_lens),
     ])
 }
 
 /// From so far from the middle, in diagonals of the plan, and so high above the ground, towards the middle.
-fn low(extent: &Aabb, away: f64, height_m: f64) -> Camera {
-    let middle = extent.center().with_z(extent.min.z + height_m);
-    let eye = middle + away * extent.size().truncate().length() * DVec3::new(-0.6, -0.8, 0.0);
-    Camera::looking(eye, middle, 45_f64.to_radians())
+fn low(studio: &Studio, away: f64, height_m: f64) -> Camera {
+    let extent = studio.extent();
+    let above = |at: DVec2| at.extend(studio.places().ground(at).unwrap_or(extent.min.z) + height_m);
+    let middle = extent.center().truncate();
+    let eye = middle + away * extent.size().truncate().length() * DVec2::new(-0.6, -0.8);
+    Camera::looking(above(eye), above(middle), 45_f64.to_radians())
 }
 
 /// The methods that are compared, how many layers or samples stand in the table, and samples.
