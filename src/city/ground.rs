@@ -22,8 +22,8 @@ use crate::{
 
 /// The distance of the ground below the bases, metres: enough for depth to tell it from ground floors.
 pub const BELOW_M: f64 = 0.04;
-/// The same below terrain, roads, water and land.
-pub const BELOW_TERRAIN_M: f64 = 0.25;
+/// The same below terrain, roads, water and land: about as much, so that what is level stays so, and more than its triangles are off.
+pub const BELOW_TERRAIN_M: f64 = 0.06;
 /// Around the city the ground is as it is below it for at least so many metres, ...
 const LEAST_MARGIN_M: f64 = 60.0;
 /// ... and this part of the diagonal of its extent.
@@ -377,7 +377,7 @@ mod tests {
         for i in 0..(tile.vertices.end - tile.vertices.start) {
             let place = corner(i);
             let height = height_at(&triangles, place.truncate()).unwrap();
-            assert!(height < place.z - 0.5 * BELOW_TERRAIN_M, "{height} above {}", place.z);
+            assert!(height < place.z - 0.4 * BELOW_TERRAIN_M, "{height} above {}", place.z);
         }
         let middle = gone.iter().map(|&i| corner(i)).sum::<DVec3>() / 3.0;
         let height = height_at(&triangles, middle.truncate()).unwrap();

@@ -15,7 +15,10 @@ const LEVEL: f64 = 1e-3;
 /// How much farther each ring is than the one before, ...
 const FARTHER: f64 = 2.0;
 /// ... and how many points it has.
-const RING_POINTS: usize = 24;
+const RING_POINTS: usize = 16;
+
+/// Below the rim of terrain less is not seen, metres.
+const LEAST_GAP_M: f64 = 0.15;
 
 /// Triangles, counter-clockwise from above.
 pub struct Net {
@@ -68,6 +71,10 @@ impl Net {
 
     /// Hangs a strip from the rim of terrain down into the ground, so that nothing is seen below it.
     pub fn hang(&mut self, rim: &[DVec3; 2], field: &HeightField) {
+        let gap = |p: &DVec3| p.z - field.least_around(p.truncate());
+        if rim.iter().all(|p| gap(p) < LEAST_GAP_M) {
+            return;
+        }
         let first = self.points.len() as u32;
         let foot = |p: DVec3| p.truncate().extend(field.least_around(p.truncate()).min(p.z) - BELOW_M);
         self.points.extend([rim[0], rim[1], foot(rim[1]), foot(rim[0])]);
@@ -129,7 +136,8 @@ fn ring_point(k: usize, half: f64, away: f64) -> DVec2 {
         let beyond = ((middle * direction).abs() - half).max(DVec2::ZERO).length();
         if beyond < away { low = middle } else { high = middle }
     }
-    high * direction
+    // Edges between them are as far as that.
+    high / (std::f64::consts::PI / RING_POINTS as f64).cos() * direction
 }
 
 fn counter_clockwise(points: &[DVec3], [a, b, c]: [u32; 3]) -> [u32; 3] {
