@@ -1,9 +1,14 @@
-//! Text of files in messages: as a terminal, a window and a log may have it.
+//! Text: of files in messages, as a terminal, a window and a log may have it; and numbers that stand for it.
 
 /// Characters of a quoted name that messages show.
 const NAME: usize = 200;
 /// Characters of a line.
 const LINE: usize = 1000;
+
+/// FNV-1a of a text, 64 bits: the same everywhere, and no defence against anybody.
+pub fn hash(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
 
 /// A message of one or more lines, of names from files neither what steers a terminal, nor what turns the order of letters round, nor more
 /// than 200 characters in quotes.

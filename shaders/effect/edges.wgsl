@@ -1,7 +1,7 @@
 //! name = "edges"
 //! kind = "post"
 //! spec = "Trapp §3.5"
-//! doc = "Lines where objects, faces or depths meet, as one would draw them (Saito and Takahashi 1990): full where depth steps or bends by 1.2 % from pixel to pixel, none at 0.4 %; full where faces turn by 37 degrees, none at 20. They are weaker where a pixel is wider than 1.8 m, a quarter from 7.2 m on."
+//! doc = "Lines where objects, faces or depths meet, as one would draw them (Saito and Takahashi 1990): full where depth steps or bends by 1.2 % from pixel to pixel, none at 0.4 %; full where faces turn by 37 degrees, none at 20. They are weaker where a pixel is wider than 1.8 m, a quarter from 7.2 m on. Translucent layers have none."
 //!
 //! [[parameter]]
 //! name = "color"
@@ -25,6 +25,11 @@
 
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     if point.surface == NO_SURFACE {
+        return color;
+    }
+    // What lies beside a translucent layer is not known: what is opaque there is another surface.
+    let own = beside(point, vec2i(0));
+    if own.surface != point.surface || own.depth != point.depth {
         return color;
     }
     let line = max(across(point, vec2i(1, 0), p.creases), across(point, vec2i(0, 1), p.creases));

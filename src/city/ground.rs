@@ -196,14 +196,8 @@ impl Known {
 fn triangles(model: &CityModel, geometry: u32) -> impl Iterator<Item = [DVec3; 3]> {
     let tiles = model.geometries[geometry as usize].tiles.clone();
     let tiles = &model.tiles[tiles.start as usize..tiles.end as usize];
-    let corners = |tile: &Tile, t: u32| {
-        [0, 1, 2].map(|k| {
-            let vertex = tile.vertices.start + model.indices[(3 * t + k) as usize];
-            tile.origin.as_dvec3() + Vec3::from(model.vertices[vertex as usize].position).as_dvec3()
-        })
-    };
     tiles.iter().flat_map(move |tile| {
-        (tile.indices.start / 3..tile.indices.end / 3).map(move |triangle| corners(tile, triangle))
+        (tile.indices.start / 3..tile.indices.end / 3).map(move |triangle| model.corners(tile, triangle))
     })
 }
 

@@ -3,7 +3,7 @@
 //! It is of what is shown by default ([`shown_geometries`]): of each object its finest level of detail, of a whole that its parts stand for
 //! all of these together. Measured when first asked for.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 
 use crate::city::{
@@ -95,10 +95,8 @@ impl CityModel {
 
 /// The corners of a triangle of a tile, metres, and its surface and packed normal.
 fn corners(model: &CityModel, tile: &crate::city::model::Tile, triangle: u32) -> ([DVec3; 3], u32, u32) {
-    let origin = tile.origin.as_dvec3();
-    let vertices =
-        [0, 1, 2].map(|k| &model.vertices[(tile.vertices.start + model.indices[3 * triangle as usize + k]) as usize]);
-    (vertices.map(|v| origin + Vec3::from(v.position).as_dvec3()), vertices[0].surface, vertices[0].normal)
+    let first = &model.vertices[(tile.vertices.start + model.indices[3 * triangle as usize]) as usize];
+    (model.corners(tile, triangle), first.surface, first.normal)
 }
 
 /// The objects that are shown as parts of others, which are not, with these.

@@ -500,6 +500,11 @@ impl CityModel {
         tile.origin.as_dvec3() + glam::Vec3::from(self.vertices[vertex as usize].position).as_dvec3()
     }
 
+    /// The corners of a triangle of a tile, metres; `triangle` counts from the model's first.
+    pub fn corners(&self, tile: &Tile, triangle: u32) -> [DVec3; 3] {
+        [0, 1, 2].map(|k| self.position(tile, tile.vertices.start + self.indices[(3 * triangle + k) as usize]))
+    }
+
     /// Box around the vertices used by any geometry, metres; empty for an empty city.
     pub fn extent(&self) -> Aabb {
         self.geometries.iter().fold(Aabb::EMPTY, |all, g| all.union(g.bounds))

@@ -13,6 +13,8 @@ use crate::{
 
 /// An eye never comes lower than this above the ground by itself, metres.
 pub const LEAST_ABOVE_M: f64 = 0.5;
+/// Higher than anything, metres: rays down begin there.
+const ABOVE_ALL_M: f64 = 1e6;
 /// Directions to the sides in which an eye looks for the walls around it.
 const SIDES: [DVec3; 4] = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y];
 /// In so many of them there must be walls of the building whose roof is above: in an arcade there are fewer.
@@ -52,7 +54,7 @@ impl Places<'_> {
     }
 
     fn highest(&self, at: DVec2, accept: impl Fn(u32) -> bool) -> Option<Top> {
-        let above = self.model.extent().max.z + 1.0;
+        let above = ABOVE_ALL_M;
         let ray = Ray { origin: at.extend(above), direction: DVec3::NEG_Z };
         let hit = self.first(&ray, accept)?;
         Some(Top { height: above - hit.t, object: hit.object })

@@ -245,8 +245,7 @@ impl SpatialIndex {
 
 /// World corners of a triangle (index into [`CityModel::planes`]) of a tile.
 fn corners(model: &CityModel, tile: u32, triangle: u32) -> [DVec3; 3] {
-    let tile = &model.tiles[tile as usize];
-    [0, 1, 2].map(|k| model.position(tile, tile.vertices.start + model.indices[(3 * triangle + k) as usize]))
+    model.corners(&model.tiles[tile as usize], triangle)
 }
 
 fn runs_of(model: &CityModel, number: u32) -> Option<Bvh> {

@@ -8,6 +8,7 @@ use crate::{
         scene_file::{self, Options},
     },
     scene::Scene,
+    text,
 };
 
 /// Text that goes into a picture: keyword and value.
@@ -35,13 +36,8 @@ pub fn notes(scene_hash: Option<u64>) -> Notes {
 /// scene, paths relative to its file. An animation is no part of a picture.
 pub fn notes_of(scene: &Scene, options: &Options) -> Notes {
     let still = Scene { animation: None, ..scene.clone() };
-    let hash = hash(&scene_file::to_toml_for(&still, options));
+    let hash = text::hash(&scene_file::to_toml_for(&still, options));
     Notes { dpi: scene.figure.dpi_of_file(), ..notes(Some(hash)) }
-}
-
-/// FNV-1a of a text: names a scene; not a defence against anybody.
-pub fn hash(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
 }
 
 fn png(size: [u32; 2], color: png::ColorType, depth: png::BitDepth, notes: &Notes, data: &[u8]) -> io::Result<Vec<u8>> {

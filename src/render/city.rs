@@ -396,7 +396,8 @@ impl CityBuffers {
         };
         let layers = gather_layers(shown, tiles, &mut table, kind);
         let mut entries = table.entries;
-        let blocks = blocks.map(|model| gather_blocks(model, &cells, &mut entries, extent.center(), kind));
+        let flat_roofs = blocks.map(|_| surfaces::flat_roofs(shown)).unwrap_or_default();
+        let blocks = blocks.map(|model| gather_blocks(model, &flat_roofs, &cells, &mut entries, extent.center(), kind));
         for gathered in &plain {
             push(upload(gpu, SectionKind::Plain, gathered, Extra::NONE)?);
         }
@@ -607,9 +608,10 @@ fn gather_ground(ground: &Ground, table: &mut SurfaceTable, plain: &mut Gathered
     if ground.is_filling { Aabb::EMPTY } else { ground.bounds_below() }
 }
 
-/// Block models by cell, of each first what looks up, and what the table of surfaces says of them.
+/// Block models by cell, of each first what looks up, and what the table of surfaces says of them; their roofs are flat where those of `flat_roofs` are.
 fn gather_blocks(
     model: &CityModel,
+    flat_roofs: &[bool],
     cells: &Cells,
     entries: &mut Vec<layout::Surface>,
     middle: DVec3,
@@ -625,6 +627,7 @@ fn gather_blocks(
     let mut table = SurfaceTable::new(model, &textures, &shells);
     // Seen from afar, nothing is seen through.
     table.is_opaque = true;
+    table.flat_roofs = Some(flat_roofs);
     table.entries = std::mem::take(entries);
     let mut gathered = Gathered::new(kind, Group::PLAIN);
     for of_cell in tiles.chunk_by(|a, b| a.0 == b.0) {

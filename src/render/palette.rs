@@ -5,6 +5,7 @@
 use crate::{
     city::{CityModel, NONE, ObjectClass, StringId, Surface},
     lens::color::{linear_from_oklab, oklab_from_linear},
+    text,
 };
 
 /// The clay of the plain ground.
@@ -42,13 +43,29 @@ const OTHER: [u8; 3] = [214, 208, 198];
 /// Cosine of the slope up to which a roof is flat: 8°.
 const LEAST_FLAT: f64 = 0.99;
 
-/// Colour of a surface without a material that faces upwards by so much (cosine); `is_roof`, `is_wall`: what it is where it says nothing.
-/// Roofs and walls differ from building to building.
-pub fn natural(model: &CityModel, surface: &Surface, up: f64, [is_roof, is_wall]: [bool; 2]) -> [u8; 3] {
+/// What a surface is, as far as its colour goes by that, where it says nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Facing {
+    /// A roof.
+    pub is_roof: bool,
+    /// A wall.
+    pub is_wall: bool,
+    /// Level: of a roof, a flat one.
+    pub is_level: bool,
+}
+
+/// Whether what faces upwards by so much (cosine) is level.
+pub fn is_level(up: f64) -> bool {
+    up >= LEAST_FLAT
+}
+
+/// Colour of a surface without a material. Roofs and walls differ from building to building.
+pub fn natural(model: &CityModel, surface: &Surface, facing: Facing) -> [u8; 3] {
+    let Facing { is_roof, is_wall, is_level } = facing;
     let class = model.objects[surface.object as usize].class;
     let kind = (surface.kind != StringId(NONE)).then(|| model.strings.get(surface.kind));
     let hash = || hash_of(&model.objects[model.root(surface.object) as usize].id);
-    let roof = || if up >= LEAST_FLAT { one_of(&FLAT_ROOFS, hash()) } else { one_of(&ROOFS, hash()) };
+    let roof = || if is_level { one_of(&FLAT_ROOFS, hash()) } else { one_of(&ROOFS, hash()) };
     // Walls do not go by the roof.
     let wall = || one_of(&WALLS, hash() >> 20);
     match kind {
@@ -80,11 +97,9 @@ fn one_of(colors: &[[u8; 3]], number: u64) -> [u8; 3] {
     colors[(number % colors.len() as u64) as usize]
 }
 
-/// A number of an id, the same everywhere: 64-bit FNV-1a, its bits mixed.
+/// A number of an id, the same everywhere, all of whose bits differ from id to id.
 fn hash_of(id: &str) -> u64 {
-    let hash = id
-        .bytes()
-        .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
+    let hash = text::hash(id);
     (hash ^ hash >> 31).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 7
 }
 

@@ -11,7 +11,7 @@ use std::{
 
 use crate::{
     city::{
-        CityModel, Lod,
+        CityModel, Lod, ObjectClass,
         coplanar::coplanar_triangles,
         decode_normal,
         derived::{Derive, Form, derive},
@@ -279,7 +279,11 @@ impl Studio {
     /// The building that the eye of a scene is in, where its camera is given.
     pub fn building_around(&self, scene: &Scene) -> Option<u32> {
         let eye = scene.camera?.eye;
-        let is_near = |g: &u32| self.model.geometries[*g as usize].bounds.distance_to(eye) == 0.0;
+        let is_near = |g: &u32| {
+            let geometry = &self.model.geometries[*g as usize];
+            let class = self.model.objects[geometry.object as usize].class;
+            class == ObjectClass::Building && geometry.bounds.distance_to(eye) == 0.0
+        };
         // The index takes a moment to make: only where there may be an answer.
         self.geometries.iter().any(is_near).then(|| self.places().building_around(eye)).flatten()
     }

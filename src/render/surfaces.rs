@@ -11,7 +11,8 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         city::{Group, Images, Shown, Texels, Translucency},
-        layout, palette,
+        layout,
+        palette::{self, Facing},
         shells::Shells,
         textures::Textures,
     },
@@ -32,6 +33,8 @@ pub struct SurfaceTable<'a> {
     pub is_opaque: bool,
     /// Colour of the plain ground, linear light.
     pub ground: [f32; 3],
+    /// Of block models, whose roofs are all flat: of each object whether its own is.
+    pub flat_roofs: Option<&'a [bool]>,
     /// The entries, by number.
     pub entries: Vec<layout::Surface>,
     numbers: FxHashMap<(u32, u32, bool), u32>,
@@ -50,7 +53,16 @@ impl<'a> SurfaceTable<'a> {
     /// An empty table.
     pub fn new(model: &'a CityModel, textures: &'a Textures, shells: &'a Shells) -> Self {
         let ground = palette::linear_bytes(palette::PLAIN_GROUND);
-        Self { model, textures, shells, is_opaque: false, ground, entries: Vec::new(), numbers: FxHashMap::default() }
+        Self {
+            model,
+            textures,
+            shells,
+            is_opaque: false,
+            ground,
+            flat_roofs: None,
+            entries: Vec::new(),
+            numbers: FxHashMap::default(),
+        }
     }
 
     /// Numbers given so far are not given again: surfaces of another tile are others.
@@ -61,11 +73,11 @@ impl<'a> SurfaceTable<'a> {
     /// The number of a model surface (`NONE`: the plain ground) that faces a packed normal; `has_texcoords`: whether it can show a
     /// texture.
     pub fn number(&mut self, surface: u32, normal: u32, has_texcoords: bool) -> u32 {
-        let Self { model, textures, shells, is_opaque, ground, entries, numbers } = self;
+        let Self { model, textures, shells, is_opaque, ground, flat_roofs, entries, numbers } = self;
         *numbers.entry((surface, normal, has_texcoords)).or_insert_with(|| {
             let found = match surface {
                 NONE => plain_ground(*ground, normal),
-                surface => entry(model, textures, shells, surface, normal),
+                surface => entry_with(model, textures, shells, surface, normal, *flat_roofs),
             };
             let number = entries.len() as u32;
             entries.push(if *is_opaque { found.opaque() } else { found });
@@ -169,12 +181,35 @@ fn ground_color(shown: &Shown, textures: &Textures) -> [f32; 3] {
             }
             let [p, q, r] = [a, b, c].map(|vertex| Vec3::from(vertex.position).truncate());
             let weight = f64::from((q - p).perp_dot(r - p).abs());
-            let color = natural_color(model, textures, surface, a.normal);
+            let color = natural_color(model, textures, surface, a.normal, None);
             (0..3).for_each(|i| sum[i] += weight * f64::from(color[i]));
             area += weight;
         }
     }
     if area > 0.0 { std::array::from_fn(|i| 0.5 * (plain[i] + (sum[i] / area) as f32)) } else { plain }
+}
+
+/// Of each object whether most of its roof is flat, by area in plan.
+pub fn flat_roofs(shown: &Shown) -> Vec<bool> {
+    let model = shown.model;
+    // How much more is flat than not.
+    let mut flat = vec![0.0_f32; model.objects.len()];
+    for geometry in shown.geometries.iter().map(|&g| &model.geometries[g as usize]) {
+        for tile in &model.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize] {
+            let indices = &model.indices[tile.indices.start as usize..tile.indices.end as usize];
+            for corners in indices.chunks_exact(3) {
+                let [a, b, c] = [0, 1, 2].map(|k| &model.vertices[(tile.vertices.start + corners[k]) as usize]);
+                if part_of(model, &model.surfaces[a.surface as usize], a.normal) != layout::PART_ROOF {
+                    continue;
+                }
+                let [p, q, r] = [a, b, c].map(|vertex| Vec3::from(vertex.position));
+                let area = (q - p).cross(r - p);
+                let is_level = palette::is_level(f64::from(area.normalize_or_zero().z));
+                flat[geometry.object as usize] += if is_level { area.z.abs() } else { -area.z.abs() };
+            }
+        }
+    }
+    flat.into_iter().map(|more| more > 0.0).collect()
 }
 
 /// What the table says of a model surface (`NONE`: the plain ground) that faces a packed normal.
@@ -185,11 +220,23 @@ pub(super) fn entry(
     surface: u32,
     normal: u32,
 ) -> layout::Surface {
+    entry_with(model, textures, shells, surface, normal, None)
+}
+
+/// The same; `flat_roofs` as for [`natural_color`].
+fn entry_with(
+    model: &CityModel,
+    textures: &Textures,
+    shells: &Shells,
+    surface: u32,
+    normal: u32,
+    flat_roofs: Option<&[bool]>,
+) -> layout::Surface {
     let Some(found) = model.surfaces.get(surface as usize) else {
         return plain_ground(palette::linear_bytes(palette::PLAIN_GROUND), normal);
     };
     let material = model.materials.get(found.material as usize);
-    let color = natural_color(model, textures, found, normal);
+    let color = natural_color(model, textures, found, normal, flat_roofs);
     let unlit = if material.is_some_and(|m| m.unlit) { layout::SURFACE_UNLIT } else { 0 };
     let part = part_of(model, found, normal) << layout::SURFACE_PART_SHIFT;
     let shell = shells.get(&found.object).copied().unwrap_or_default();
@@ -199,7 +246,14 @@ pub(super) fn entry(
 }
 
 /// The colour of a model surface that faces a packed normal, linear light; where it has a texture, that of the material.
-fn natural_color(model: &CityModel, textures: &Textures, surface: &Surface, normal: u32) -> [f32; 3] {
+/// `flat_roofs`: of each object whether its roof is one, where that is not what the surface says.
+fn natural_color(
+    model: &CityModel,
+    textures: &Textures,
+    surface: &Surface,
+    normal: u32,
+    flat_roofs: Option<&[bool]>,
+) -> [f32; 3] {
     let is_tamed = |m: &Material| model.shown_materials == Materials::Tamed && m.texture == NONE && !m.unlit;
     match model.materials.get(surface.material as usize) {
         // A texture brings the colour; the material's own only tints it.
@@ -210,8 +264,16 @@ fn natural_color(model: &CityModel, textures: &Textures, surface: &Surface, norm
         // A declared texture that is missing: most files say plain white beside it, so the quiet colours are better.
         _ => {
             let part = part_of(model, surface, normal);
-            let is = [layout::PART_ROOF, layout::PART_WALL].map(|of| part == of);
-            palette::linear_bytes(palette::natural(model, surface, decode_normal(normal).z, is))
+            let own = || palette::is_level(decode_normal(normal).z);
+            palette::linear_bytes(palette::natural(
+                model,
+                surface,
+                Facing {
+                    is_roof: part == layout::PART_ROOF,
+                    is_wall: part == layout::PART_WALL,
+                    is_level: flat_roofs.map_or_else(own, |are| are[surface.object as usize]),
+                },
+            ))
         }
     }
 }

@@ -24,7 +24,6 @@ const SCENE: &str = r#"
 veduta = 1
 [city]
 files = ["builtin:square"]
-materials = "file"
 [camera]
 eye = [-75, -110, 62]
 target = [8, 12, 4]
@@ -273,7 +272,7 @@ fn what_cannot_be_drawn_is_said_in_one_line_before_anything_is() {
         &SCENE.replace("eye = [80, -100, 62]", "eye = [8, 12, 4]"),
         &[],
         1,
-        "s.toml:22: [animation] camera.2: eye and target",
+        "s.toml:21: [animation] camera.2: eye and target",
     );
     // On its way the eye runs over what it looks at.
     let over = still.to_owned()

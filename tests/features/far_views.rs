@@ -89,6 +89,5 @@ fn a_far_overlay_looks_as_with_all_triangles() {
     };
     let [own, without] = [&full, &bare].map(|other| mean(other));
     assert!(own > 0.0, "block models are drawn");
-    // Roofs of blocks are flat, and flat roofs have colours of their own.
-    assert!(own < 0.25 * without, "{own} of 255 off the city in full, {without} off the city without houses");
+    assert!(own < 0.2 * without, "{own} of 255 off the city in full, {without} off the city without houses");
 }

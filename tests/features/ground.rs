@@ -111,3 +111,22 @@ fn a_deformation_of_the_whole_city_takes_the_ground_around_it_away() {
     let [before, after] = [&plain, &deformed].map(|scene| shown(&mut studio, scene));
     assert!(after * 4 < before * 3, "{after} pixels show something, {before} before");
 }
+
+/// What is opaque lies elsewhere: held against it, all of a translucent layer would be a line.
+#[test]
+fn lines_of_a_look_leave_translucent_layers_alone() {
+    let glass = "[[lens]]\nname = \"glass\"\nkind = \"color\"\nbody = \"none\"\n\
+                 shape = { kind = \"box\", center = [0, 0, 0], size = [900, 900, 400] }\n\
+                 effects = [{ effect = \"transparent\", opacity = 0.4 }]\n";
+    let scenes = [String::new(), "effects = [{ effect = 'edges', strength = 0 }]\n".to_owned()]
+        .map(|rest| town(&format!("[style]\nlook = \"paper\"\n{rest}{glass}")));
+    let mut studio = of_scene(&scenes[0]);
+    for backend in [Backend::Specialised, Backend::Uber] {
+        let [lined, bare] = [0, 1].map(|i| drawn(&mut studio, &scenes[i], backend, false));
+        let of_objects: Vec<usize> =
+            (0..lined.rgba.len()).filter(|i| lined.object_id.as_ref().is_some_and(|ids| ids[*i] > 0)).collect();
+        let light = |of: &Picture| of_objects.iter().map(|i| f64::from(of.rgba[*i][1])).sum::<f64>();
+        let kept = light(&lined) / light(&bare);
+        assert!(of_objects.len() > 2000 && kept > 0.93, "{kept} of the light of {} pixels", of_objects.len());
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use super::ground::GroundFaces;
@@ -118,11 +118,8 @@ impl<'a> Source<'a> {
 
     /// The same of any model.
     pub fn triangle(model: &CityModel, tile: &Tile, triangle: u32) -> Face {
-        let origin = tile.origin.as_dvec3();
-        let corners = [0, 1, 2]
-            .map(|k| &model.vertices[(tile.vertices.start + model.indices[3 * triangle as usize + k]) as usize]);
-        let surface = corners[0].surface;
-        Face { corners: corners.map(|v| origin + Vec3::from(v.position).as_dvec3()), surface }
+        let first = tile.vertices.start + model.indices[3 * triangle as usize];
+        Face { corners: model.corners(tile, triangle), surface: model.vertices[first as usize].surface }
     }
 
     /// The part that a face belongs to: by its semantics; where it has none that say so, by which way it looks.

@@ -13,6 +13,7 @@ use crate::{
         paths::Options,
         reader::Reader,
         row::{self, Row, Variant, field, keys_of, kind, part, tables, variant},
+        style::LOOKS,
     },
     lens::{
         LensKind,
@@ -268,18 +269,8 @@ pub const LOOK: Table =
     Table { name: "look", doc: "How the view of a best-view lens looks.", keys: keys_of!(LOOK_ROWS) };
 
 const LOOK_ROWS: &[Row<Look>] = &[
-    field!(
-        key(
-            "look",
-            Kind::Word { now: &["natural", "paper", "map", "night", "blueprint"], later: &[] },
-            "\"natural\"",
-            "",
-            "As `look` of `[style]`.",
-            "\"paper\"",
-        ),
-        Word,
-        |look: Look| look.look
-    ),
+    field!(key("look", LOOKS, "\"natural\"", "", "As `look` of `[style]`.", "\"paper\"",), Word, |look: Look| look
+        .look),
     field!(
         key(
             "base",

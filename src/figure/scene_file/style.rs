@@ -11,6 +11,9 @@ use crate::{
     scene::{Style, Transparency, transparency::MOST_PEELED},
 };
 
+/// Words for looks.
+pub const LOOKS: Kind = Kind::Word { now: &["natural", "paper", "map", "night", "blueprint"], later: &[] };
+
 /// `[style]`.
 pub const STYLE: Table =
     Table { name: "style", doc: "How everything looks that no lens changes.", keys: keys_of!(STYLE_ROWS) };
@@ -20,7 +23,7 @@ pub const STYLE_ROWS: &[Row<Style>] = &[
     field!(
         key(
             "look",
-            Kind::Word { now: &["natural", "paper", "map", "night", "blueprint"], later: &[] },
+            LOOKS,
             "\"natural\"",
             "",
             "The look of the whole picture: materials under sun and sky (`natural`), a white model with fine lines on white (`paper`), flat quiet colours with cast shadows (`map`), moonlight (`night`), white lines on blue (`blueprint`). `base`, `effects` and `background` change it: a scene style among the effects stands in place of the look's.",
