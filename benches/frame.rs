@@ -23,10 +23,7 @@ use veduta::{
         stage::plain_scene,
         topics::gpu::views::{overview, see_through_city, see_through_lens, spread, street, with_lens, with_ten},
     },
-    render::{
-        frame::Backend,
-        picture::{Aovs, Request, Studio},
-    },
+    render::picture::{Request, Studio},
     scene::{CitySpec, Scene},
     view::View,
 };
@@ -241,14 +238,7 @@ fn parts(studio: &mut Studio, frame: &Frame) -> [f64; 2] {
 /// Prints the median time of each pass of a frame, by the GPU's clock.
 fn pass_times(studio: &mut Studio, frame: &Frame, pairs: usize) {
     let (Frame::Full(scene) | Frame::Unculled(scene)) = frame else { panic!("a scene is drawn in passes") };
-    let request = Request {
-        size: SIZE,
-        samples: 1,
-        transparent: false,
-        aovs: Aovs::default(),
-        statistics: true,
-        backend: Backend::default(),
-    };
+    let request = Request { statistics: true, ..Request::plain(SIZE) };
     let mut times: Vec<(String, [u64; 2], Vec<f64>)> = Vec::new();
     for round in 0..=pairs {
         let picture = studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}"));

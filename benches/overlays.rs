@@ -144,14 +144,7 @@ fn with_tables(tables: &str) -> Scene {
 }
 
 fn request(studio: &Studio) -> Request {
-    Request {
-        size: SIZE,
-        samples: 1,
-        transparent: false,
-        aovs: Aovs::default(),
-        statistics: false,
-        backend: studio.backend,
-    }
+    Request { backend: studio.backend, ..Request::plain(SIZE) }
 }
 
 /// Twelve views of 160 × 120 pixels that look at the main eye's surroundings from outside and are drawn again in every frame. The model's time for a view

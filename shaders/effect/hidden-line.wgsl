@@ -26,9 +26,9 @@
 //! [[parameter]]
 //! name = "line_width"
 //! type = "number"
-//! range = [0.25, 16]
-//! default = 1.2
-//! unit = "pixels"
+//! range = [0.1, 16]
+//! default = 0.9
+//! unit = "points"
 //! doc = "Width of the lines."
 //!
 //! [[parameter]]

@@ -13,9 +13,9 @@
 //! [[parameter]]
 //! name = "line_width"
 //! type = "number"
-//! range = [0.25, 16]
-//! default = 1.1
-//! unit = "pixels"
+//! range = [0.1, 16]
+//! default = 0.825
+//! unit = "points"
 //! doc = "Width of the lines."
 //!
 //! [[parameter]]

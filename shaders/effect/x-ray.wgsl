@@ -1,7 +1,7 @@
 //! name = "x-ray"
 //! kind = "opacity"
 //! spec = "Trapp §3.3"
-//! doc = "Faces that look at the eye are clear, those seen edge on are dense: what stands in front is known by its form."
+//! doc = "Faces that look at the eye are clear, those seen edge on are denser, and what lies behind a layer is fainter than it: what stands in front is known by its form."
 //! objects = "chosen"
 //!
 //! [[parameter]]
@@ -15,14 +15,14 @@
 //! name = "least"
 //! type = "number"
 //! range = [0, 1]
-//! default = 0.05
+//! default = 0.13
 //! doc = "Opacity of a face that looks at the eye."
 //!
 //! [[parameter]]
 //! name = "most"
 //! type = "number"
 //! range = [0, 1]
-//! default = 0.85
+//! default = 0.5
 //! doc = "Opacity of a face seen edge on."
 //!
 //! [[parameter]]
@@ -30,6 +30,13 @@
 //! type = "shares"
 //! default = [0, 1]
 //! doc = "Ramp of the opacity: how much of the way from `least` to `most`, at equal steps from faces that look at the eye to those seen edge on."
+//!
+//! [[parameter]]
+//! name = "behind"
+//! type = "number"
+//! range = [0, 1]
+//! default = 0.45
+//! doc = "How dense a layer is beside the next nearer one of its pixel: the far sides of a house, and rows of houses, do not pile up; 1 = as dense. Where layers have no order (`weighted`, `stochastic`), all are as the nearest."
 //!
 //! [[parameter]]
 //! name = "floors"
@@ -51,7 +58,7 @@ fn effect(opacity: f32, point: Point, p: Parameters) -> f32 {
     let facing = min(abs(dot(point.normal, towards_eye(point))), 1.0);
     let opacity_of_face = mix(p.least, p.most, share_on_ramp(p.curve, density(facing, p.exponent)));
     let is_floor = point.part == PART_OTHER && abs(point.normal.z) > LEAST_FLOOR;
-    return select(opacity_of_face, p.floors * opacity_of_face, is_floor);
+    return select(1.0, p.floors, is_floor) * opacity_of_face * pow(max(p.behind, 1e-9), f32(point.layer));
 }
 
 // 0 where the exponent is, 1 where the face is edge on (below 2^-60), else 1 - facing^exponent.

@@ -31,6 +31,7 @@ struct Light {
 @group(1) @binding(4) var shadow_map: texture_depth_2d;
 @group(1) @binding(5) var shadow_sampler: sampler_comparison;
 @group(1) @binding(10) var sky_map: texture_depth_2d;
+@group(1) @binding(11) var sky_in_picture: texture_2d<f32>;   // share of the sky, stored depth; at half the resolution
 
 // The least cosine of the angle between a normal and its face's that a push makes up for: more would be seen at the feet of walls.
 const LEAST_ALONG: f32 = 0.7;
@@ -38,6 +39,7 @@ const LEAST_ALONG: f32 = 0.7;
 // A software adapter runs both sides of every branch, so what is known before is a constant of the pipeline.
 override SHADOWS: bool = false;
 override SKY_SHADOWS: bool = false;
+override SCREEN_OCCLUSION: bool = false;
 
 // How a map of depth from a light is read; members as those of Light.
 struct LightMap {
@@ -58,7 +60,7 @@ fn sun_share(relative: vec3f, normal: vec3f, face: vec3f) -> f32 {
 }
 
 // Light of the sky that arrives from the sample's point of it, as a multiple of what falls on a surface that faces it, of the whole sky: the
-// mean over all samples is the share of the sky that is seen, each part weighted by its cosine.
+// mean over all samples is the share of the sky that is seen, each part weighted by its cosine. Where the picture tells it, that share itself.
 var<private> sky_arriving: f32 = 1.0;
 
 // A bound of what a sample may be brighter than its picture: a few points of the sky give walls all their light.
@@ -85,6 +87,33 @@ fn see_sky(relative: vec3f, normal: vec3f, face: vec3f) {
         share = share_in(sky_map, place);
     }
     sky_arriving = share * light.sky_weight;
+}
+
+// Finds it for what a pixel shows, in a picture of one sample: of the four nearest texels those that lie in the plane of its face. Each has looked in
+// other directions.
+fn see_sky_in_picture(pixel: vec2i, relative: vec3f, normal: vec3f) {
+    if !SCREEN_OCCLUSION {
+        return;
+    }
+    let across = view.view_from_world * normal;
+    let place = view.view_from_world * relative;
+    let pixel_m = abs(2.0 / (view.projection.y * view.size.y)) * select(-place.z, 1.0, view.orthographic == 1u);
+    let width = 1.0 / (0.1 + 2.0 * pixel_m);
+    let most = vec2i(textureDimensions(sky_in_picture)) - 1;
+    let first = (pixel - 1) >> vec2u(1u);
+    var sum = 0.0;
+    var weights = 1e-4;
+    for (var i = 0; i < 4; i++) {
+        let texel = clamp(first + vec2i(i & 1, i >> 1), vec2i(0), most);
+        let seen = textureLoad(sky_in_picture, texel, 0).xy;
+        let ray = ray_of_pixel(vec2f(min(texel * 2, vec2i(view.size) - 1)) + 0.5);
+        let other = ray.origin + distance_of_depth(max(seen.y, 1e-30)) * ray.direction;
+        let off = abs(dot(across, other - place));
+        let weight = select(0.0, max(1.0 - off * width, 0.0), seen.y > 0.0) + 1e-4;
+        sum += weight * seen.x;
+        weights += weight;
+    }
+    sky_arriving = (sum + 1e-4) / weights;
 }
 
 // Where a map shows a place.
@@ -217,6 +246,9 @@ fn distance_in_cone(depths: texture_depth_2d, place: MapPlace, spread: f32) -> f
 fn irradiance(normal: vec3f, sun: f32) -> vec3f {
     let up = 0.5 + 0.5 * normal.z;
     var ambient = mix(light.ground, light.sky, up);
+    if SCREEN_OCCLUSION {
+        ambient = light.ground * (1.0 - up) + light.sky * (up * sky_arriving);
+    }
     if SKY_SHADOWS {
         ambient = light.ground * (1.0 - up) + light.sky * (max(dot(normal, light.to_sky), 0.0) * sky_arriving);
     }

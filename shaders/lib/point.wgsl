@@ -111,6 +111,7 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u, share: vec3f) -> Po
     point.natural = surface.color;
     point.sun = sun_share(point.relative, point.normal, face);
     see_sky(point.relative, point.normal, face);
+    see_sky_in_picture(pixel, point.relative, face);
     point.arriving = irradiance(point.normal, point.sun);
     point.shade = luminance(point.arriving);
     point.opacity = opacity_of(surface);

@@ -6,8 +6,17 @@
 struct LineStage {
     width: f32,                 // pixels
     step: u32,                  // place of the effect that draws among all
-    flat_edges: u32,            // 1: also edges between faces that go on flat
+    drawn: u32,                 // LINES_*
     reserved: u32,
+}
+
+const LINES_FLAT: u32 = 1u;         // also edges between faces that go on flat
+const LINES_FRONT: u32 = 2u;        // only of faces that look at the eye, and silhouettes
+const LINES_FADE: u32 = 4u;         // weaker where they are wide in the city
+const LINES_NO_TERRAIN: u32 = 8u;
+
+fn draws(what: u32) -> bool {
+    return (stage.drawn & what) != 0u;
 }
 
 @group(1) @binding(3) var<uniform> light: Light;
@@ -26,7 +35,13 @@ struct Line {
 @vertex
 fn vertex(edge: Edge, @builtin(vertex_index) i: u32) -> Line {
     let made = edge_vertex(edge, i, stage.width);
-    let is_drawn = edge_class(edge) != EDGE_FLAT || stage.flat_edges == 1u;
+    var is_drawn = edge_class(edge) != EDGE_FLAT || draws(LINES_FLAT);
+    if draws(LINES_FRONT) && edge_class(edge) != EDGE_BORDER {
+        let to_eye = select(-city_relative(edge.origin, edge.start), vec3f(0.0, 0.0, 1.0) * view.view_from_world, view.orthographic == 1u);
+        let a = dot(city_direction(decode_normal(edge.normal_a)), to_eye) > 0.0;
+        let b = dot(city_direction(decode_normal(edge.normal_b)), to_eye) > 0.0;
+        is_drawn = a != b || (a && is_drawn);
+    }
     let clip = select(vec4f(2.0, 2.0, 0.5, 1.0), made.clip, is_drawn);
     return Line(clip, made.line, made.ends, made.face_a, made.face_b, made.along, vec2u(city_surface(edge_surface(edge)), city_surface(edge.other)));
 }
@@ -66,6 +81,9 @@ fn fragment(in: Line) -> Pixel {
     other.part = part_of(beyond);
     other.normal = decode_normal(beyond.normal);
     let seen = line_at(stage.step, point, fragment, other, classes_at(sight_at(pixel, ray, depth, surface.object), 1u));
-    let opacity = seen.a * edge_coverage(in.line, stage.width);
+    let is_terrain = fragment.part == PART_TERRAIN && other.part == PART_TERRAIN;
+    let wide = max(stage.width, 1.0) * metres_per_pixel(point);
+    let fade = select(1.0, clamp(0.9 / wide, 0.33, 1.0), draws(LINES_FADE));
+    let opacity = seen.a * fade * edge_coverage(in.line, stage.width) * select(1.0, 0.0, is_terrain && draws(LINES_NO_TERRAIN));
     return Pixel(vec4f(seen.rgb * opacity, opacity), edge_depth(in.line, in.ends, in.face_a, in.face_b, in.along));
 }

@@ -575,6 +575,7 @@ impl Worker {
             samples: if is_refined { SAMPLES } else { 1 },
             aovs: Aovs { depth: still, object_id: still, ..Aovs::default() },
             statistics: still && draw.is_measured,
+            screen_occlusion: true,
             ..Request::plain(size)
         };
         if self.standing.1 != size {

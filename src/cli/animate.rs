@@ -197,14 +197,7 @@ struct FrameLine<'a> {
 }
 
 fn request(scene: &Scene, statistics: bool) -> Request {
-    Request {
-        size: scene.figure.pixels(),
-        samples: scene.figure.samples(),
-        transparent: false,
-        aovs: Default::default(),
-        statistics,
-        backend: Default::default(),
-    }
+    Request { samples: scene.figure.samples(), statistics, ..Request::plain(scene.figure.pixels()) }
 }
 
 /// Where frames go.

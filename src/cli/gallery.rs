@@ -211,14 +211,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             Some((city, studio)) if city == scene.city => studio,
             _ => render::open(&scene, &options, &written, global)?.0,
         };
-        let request = Request {
-            size: scene.figure.pixels(),
-            samples: scene.figure.samples(),
-            transparent: false,
-            aovs: Default::default(),
-            statistics: false,
-            backend: Default::default(),
-        };
+        let request = Request { samples: scene.figure.samples(), ..Request::plain(scene.figure.pixels()) };
         let progress = terminal::Progress::spinning(&format!("drawing {name}"), global);
         let drawn =
             figure::draw(&mut studio, &scene, &request).map_err(|error| Failure::failed(format!("{name}: {error}")))?;

@@ -100,6 +100,9 @@ const LOW: Option<FormRow> =
 /// The colour of what is abstracted.
 const BLUE: (&str, &[(&str, Preset)]) = ("clay", &[("color", Preset::Text("#8fb4d9"))]);
 
+/// Lines by which the form of what is seen through reads.
+const FEATURE_LINES: (&str, &[(&str, Preset)]) = ("feature-lines", &[]);
+
 /// All words; the first is the default.
 pub const ROWS: &[Row] = &[
     Row {
@@ -127,42 +130,42 @@ pub const ROWS: &[Row] = &[
         word: "transparent",
         spec: "Trapp §3.3",
         doc: "Translucent, with their textures and colours.",
-        effects: &[("transparent", &[("opacity", Preset::Number(0.18))])],
+        effects: &[("transparent", &[("opacity", Preset::Number(0.23))])],
         form: None,
     },
     Row {
         word: "transparent-plain",
         spec: "Trapp §3.3",
         doc: "Translucent, without them.",
-        effects: &[("transparent", &[("opacity", Preset::Number(0.18))]), ("clay", &[])],
+        effects: &[("transparent", &[("opacity", Preset::Number(0.23))]), ("clay", &[])],
         form: None,
     },
     Row {
         word: "transparent-box",
         spec: "Trapp §3.3",
-        doc: "Their bounding boxes, translucent.",
-        effects: &[("transparent", &[("opacity", Preset::Number(0.12))]), ("clay", &[])],
+        doc: "Their bounding boxes, translucent, with their edges.",
+        effects: &[("transparent", &[("opacity", Preset::Number(0.14))]), ("clay", &[]), FEATURE_LINES],
         form: BOX,
     },
     Row {
         word: "x-ray",
         spec: "Trapp §3.3",
-        doc: "Clear where they face the eye, dense where they are seen edge on, in their own colours.",
-        effects: &[("x-ray", &[])],
+        doc: "Clear where they face the eye, denser where they are seen edge on, in their own colours, with their edges; what is behind is fainter.",
+        effects: &[("x-ray", &[]), FEATURE_LINES],
         form: None,
     },
     Row {
         word: "x-ray-color",
         spec: "Trapp §3.3",
         doc: "The same in one colour.",
-        effects: &[("x-ray", &[]), BLUE],
+        effects: &[("x-ray", &[]), BLUE, FEATURE_LINES],
         form: None,
     },
     Row {
         word: "x-ray-shape",
         spec: "Trapp §3.3",
         doc: "The same of their footprints' prisms: colour and shape are left out.",
-        effects: &[("x-ray", &[]), BLUE],
+        effects: &[("x-ray", &[]), BLUE, FEATURE_LINES],
         form: PRISM,
     },
     Row {
@@ -183,7 +186,7 @@ pub const ROWS: &[Row] = &[
         word: "x-ray-ramp",
         spec: "Trapp §3.3",
         doc: "As `x-ray`, in colours of a ramp, from faces that look at the eye to those seen edge on; opacity has one too.",
-        effects: &[("x-ray", &[]), ("x-ray-tint", &[])],
+        effects: &[("x-ray", &[]), ("x-ray-tint", &[]), FEATURE_LINES],
         form: None,
     },
     Row {
@@ -196,8 +199,12 @@ pub const ROWS: &[Row] = &[
     Row {
         word: "lod1",
         spec: "Trapp §3.3",
-        doc: "Their blocks of level of detail 1, translucent; of what has none the prism over its footprint.",
-        effects: &[("transparent", &[("opacity", Preset::Number(0.12))]), ("clay", &[])],
+        doc: "Their blocks of level of detail 1, translucent and grey, with their edges; of what has none the prism over its footprint.",
+        effects: &[
+            ("transparent", &[("opacity", Preset::Number(0.16))]),
+            ("clay", &[("color", Preset::Text("#7d8ea0"))]),
+            ("feature-lines", &[("line_color", Preset::Text("#4c5863"))]),
+        ],
         form: LOD1,
     },
     Row {
@@ -224,8 +231,12 @@ pub const ROWS: &[Row] = &[
     Row {
         word: "hull",
         spec: "Trapp §3.3",
-        doc: "Their convex hulls, translucent.",
-        effects: &[("transparent", &[("opacity", Preset::Number(0.12))]), ("clay", &[])],
+        doc: "Their convex hulls, translucent and the colour of sand, with their edges.",
+        effects: &[
+            ("transparent", &[("opacity", Preset::Number(0.16))]),
+            ("clay", &[("color", Preset::Text("#d9b36c"))]),
+            ("feature-lines", &[("line_color", Preset::Text("#7d5a1e"))]),
+        ],
         form: HULL,
     },
     Row {
@@ -443,12 +454,25 @@ mod tests {
         }
         let names = |word| Row::of_word(word).unwrap().parameters().into_iter().map(|p| p.name).collect::<Vec<_>>();
         assert_eq!(names("discard"), ["part"]);
-        assert_eq!(names("x-ray-shape"), ["exponent", "least", "most", "curve", "floors", "color"]);
+        let of_x_ray = ["exponent", "least", "most", "curve", "behind", "floors", "color"];
+        let of_lines = ["line_color", "line_width", "faces_front", "fades"];
+        assert_eq!(names("x-ray-shape"), [&of_x_ray[..], &of_lines].concat());
         assert_eq!(
             (names("transparent-box"), names("low")),
-            (vec!["opacity".into(), "color".into(), "oriented".into()], vec!["height".into()])
+            (
+                vec![
+                    "opacity".into(),
+                    "color".into(),
+                    "line_color".into(),
+                    "line_width".into(),
+                    "faces_front".into(),
+                    "fades".into(),
+                    "oriented".into(),
+                ],
+                vec!["height".into()]
+            )
         );
         let plain = Row::of_word("transparent").unwrap().parameters();
-        assert_eq!(plain[0].fallback, Fallback::Value(DefaultValue::Number(0.18)));
+        assert_eq!(plain[0].fallback, Fallback::Value(DefaultValue::Number(0.23)));
     }
 }

@@ -8,10 +8,7 @@ use crate::{
     geom::{Aabb, Shape, Volume, combination::Operation},
     lens::{Class, EffectUse, Lens, LensBody, LensKind, Region},
     measure::topic::Shot,
-    render::{
-        frame::Backend,
-        picture::{Aovs, RenderError, Request, Studio},
-    },
+    render::picture::{Aovs, RenderError, Request, Studio},
     scene::{BaseStyle, Scene, Sun},
     view::{Camera, View},
 };
@@ -34,18 +31,7 @@ impl Stage<'_> {
     /// A picture of `scene` with so many samples per pixel; with lens masks where it has lenses.
     pub fn shot(&self, scene: Scene, samples: u32) -> Shot {
         let aovs = Aovs { lens_mask: !scene.lenses.is_empty(), ..Aovs::default() };
-        Shot {
-            request: Request {
-                size: self.size,
-                samples,
-                transparent: false,
-                aovs,
-                statistics: false,
-                backend: Backend::default(),
-            },
-            scene,
-            before: None,
-        }
+        Shot { request: Request { samples, aovs, ..Request::plain(self.size) }, scene, before: None }
     }
 
     /// Whether the shown place of each pixel of a picture of `scene`, which has no lenses, is in a focus area: by its definition,

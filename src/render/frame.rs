@@ -56,6 +56,8 @@ pub struct FrameInput<'a> {
     pub sample: u32,
     /// How many there will be.
     pub samples: u32,
+    /// Whether a picture of one sample tells by itself how the city hides the sky.
+    pub screen_occlusion: bool,
     /// What moves the city.
     pub moved: &'a Moved,
     /// How far edges that it bends may be from where they should be, pixels.

@@ -260,6 +260,7 @@ fn to_lines(handler: &EffectDefinition) -> u32 {
         (EffectKind::Scene, true) => 2,
         (EffectKind::Hide, false) => 3,
         (EffectKind::Hide, true) => 4,
+        (EffectKind::Post, true) => 5,
         _ => 0,
     }
 }

@@ -327,7 +327,7 @@ pub struct City {
 pub struct LineStage {
     pub width: f32,
     pub step: u32,
-    pub flat_edges: u32,
+    pub drawn: u32,
     pub reserved: u32,
 }
 

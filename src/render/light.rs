@@ -37,9 +37,14 @@ pub fn casts_shadows(sun: &Sun) -> bool {
     sun.shadows && sun.elevation > LEAST_ELEVATION
 }
 
-/// Whether a picture of so many samples shows how the city hides parts of the sky from itself.
+/// Whether the city hides parts of the sky from itself.
+pub fn hides_sky(sun: &Sun) -> bool {
+    sun.shadows && sun.ambient_occlusion
+}
+
+/// Whether the samples of a picture of so many show it, each from another point of the sky.
 pub fn occludes_sky(sun: &Sun, samples: u32) -> bool {
-    sun.shadows && sun.ambient_occlusion && samples > 1
+    hides_sky(sun) && samples > 1
 }
 
 /// From where the light of one sample comes, units towards it: the mean over all samples of a picture is that of the whole disc of the sun and

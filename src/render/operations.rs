@@ -9,6 +9,7 @@ use crate::{
         thematic::ThematicScale,
     },
     render::{palette, placed_region::Members},
+    scene::sized::POINTS,
     shader::{
         self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
         PlanBody, PlanBorder, PlanContent, PlanLens, Scope, Step, Uber,
@@ -136,7 +137,7 @@ impl Operations {
     /// The operations of the context's effects and of the enabled lenses that have a volume; `visible[i]` says
     /// whether lens i has one. `tests`: of the volumes of all lenses, in the picture and from the sun, and what leaves their combinations have. Thematic colours are
     /// those of the objects of `models`, the scene's own city first, by the first one's scale. `tables`:
-    /// what effects read of each lens.
+    /// what effects read of each lens. `point_px`: pixels of a point, which some parameters are given in.
     pub fn new(
         context: &[EffectUse],
         lenses: &[Lens],
@@ -144,6 +145,7 @@ impl Operations {
         tests: AllTests,
         models: &[&CityModel],
         tables: &LensTables,
+        point_px: f64,
     ) -> Result<Self, ChoiceError> {
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(tests.sun), ..Self::default() };
@@ -154,12 +156,12 @@ impl Operations {
             out.uber.bodies.clear();
         }
         for effect in context {
-            out.add(effect, None, models, tables)?;
+            out.add(effect, None, models, tables, point_px)?;
         }
         let active = || lenses.iter().enumerate().filter(|(i, _)| visible.get(*i) == Some(&true));
         for (i, lens) in active() {
             for effect in lens.uses() {
-                out.add(effect, Some(i as u32), models, tables)?;
+                out.add(effect, Some(i as u32), models, tables, point_px)?;
             }
         }
         for (i, lens) in active() {
@@ -364,6 +366,7 @@ impl Operations {
         lens: Option<u32>,
         models: &[&CityModel],
         tables: &LensTables,
+        point_px: f64,
     ) -> Result<(), ChoiceError> {
         let Some(number) = shader::effect::number_of(&effect.effect) else { return Ok(()) };
         if effect.weight == Some(0.0) && blend_of(effect).is_some() {
@@ -379,7 +382,9 @@ impl Operations {
                 self.object_values.extend(value.iter().flat_map(ramp));
                 continue;
             }
-            floats.extend(value.map_or_else(|| vec![0.0; count], |value| in_floats(parameter, &value)));
+            let length = if parameter.unit == POINTS { point_px as f32 } else { 1.0 };
+            let own = value.map_or_else(|| vec![0.0; count], |value| in_floats(parameter, &value));
+            floats.extend(own.iter().map(|float| float * length));
         }
         let first_value = self.object_values.len() as f32;
         match definition.objects {

@@ -108,6 +108,9 @@ pub struct Request {
     pub statistics: bool,
     /// How shaders are made.
     pub backend: Backend,
+    /// Whether a picture of one sample tells by itself how the city hides the sky, where the sun has ambient occlusion: as the window does until the
+    /// samples are there.
+    pub screen_occlusion: bool,
 }
 
 impl Request {
@@ -120,6 +123,7 @@ impl Request {
             aovs: Aovs::default(),
             statistics: false,
             backend: Backend::default(),
+            screen_occlusion: false,
         }
     }
 }
@@ -286,6 +290,19 @@ impl Studio {
         };
         // The index takes a moment to make: only where there may be an answer.
         self.geometries.iter().any(is_near).then(|| self.places().building_around(eye)).flatten()
+    }
+
+    /// How far the eye of a scene is below the ground, metres, where its camera is given and something near stands higher than it.
+    pub fn eye_below_ground(&self, scene: &Scene) -> Option<f64> {
+        const NEAR_M: f64 = 100.0;
+        let eye = scene.camera?.eye;
+        let stands_higher = |g: &u32| {
+            let bounds = self.model.geometries[*g as usize].bounds;
+            bounds.max.z > eye.z && bounds.distance_to(eye.with_z(eye.z.clamp(bounds.min.z, bounds.max.z))) < NEAR_M
+        };
+        let may_be = self.geometries.iter().any(stands_higher);
+        let ground = may_be.then(|| self.places().ground(eye.truncate())).flatten()?;
+        (ground > eye.z).then_some(ground - eye.z)
     }
 
     /// Box around the shown city, without the plain ground; empty for an empty city.
@@ -754,6 +771,7 @@ fn input<'a>(scene: &Scene, request: &Request, resolved: &'a Resolved, tile: Pic
         masks: request.statistics || request.aovs.lens_mask,
         sample: 0,
         samples: request.samples.max(1),
+        screen_occlusion: request.screen_occlusion,
         moved: &resolved.deformations.moved,
         chord_px: scene.style.chord_px,
         furniture: &furniture::NONE,

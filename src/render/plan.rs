@@ -200,6 +200,12 @@ impl<'a> FramePlan<'a> {
         }
     }
 
+    /// Whether the picture tells how much of the sky its places see.
+    pub fn has_screen_occlusion(&self) -> bool {
+        let input = self.input;
+        input.screen_occlusion && input.samples == 1 && light::hides_sky(&input.sun)
+    }
+
     /// Whether lenses may be seen.
     pub fn has_lenses(&self) -> bool {
         !self.seen.volumes.is_empty()

@@ -249,7 +249,8 @@ impl Surroundings<'_> {
         let footprints = footprints::tables(scene, self.city, self.footprints, contents, volumes);
         let (style, tables) = (&scene.style, LensTables { sights, footprints });
         let models = self.models(contents);
-        let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &tables);
+        let made =
+            Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &tables, scene.figure.point_px());
         let mut operations = made.map_err(|error| ResolveError::Scene(error.to_string()))?;
         operations.contents.clone_from(&contents.uses);
         Ok(operations)

@@ -234,7 +234,7 @@ impl Shared {
         cities: &Cities<'a>,
         targets: &'a Targets,
         read: ShadedTargets<'a>,
-    ) -> [(u32, wgpu::BindingResource<'a>); 11] {
+    ) -> [(u32, wgpu::BindingResource<'a>); 12] {
         [
             (0, wgpu::BindingResource::TextureView(cities.surfaces())),
             (1, whole(self.planes.buffer())),
@@ -247,6 +247,7 @@ impl Shared {
             (8, wgpu::BindingResource::TextureView(read.colors)),
             (9, wgpu::BindingResource::TextureView(read.emissions)),
             (10, all_of(&targets.sky)),
+            (11, all_of(&targets.occlusion)),
         ]
     }
 }

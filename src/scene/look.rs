@@ -98,7 +98,7 @@ const ROWS: [Row; 5] = [
                 ("paper", Value::Color("#1f4f8f")),
                 ("shading", Value::Number(0.35)),
                 ("line_color", Value::Color("#e4eefb")),
-                ("line_width", Value::Number(1.1)),
+                ("line_width", Value::Number(0.825)),
             ],
         )],
         background: Some([0x1a, 0x44, 0x7e]),

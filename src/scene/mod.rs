@@ -10,7 +10,7 @@ pub mod drawn;
 pub mod look;
 pub mod model;
 pub mod overlay;
-mod sized;
+pub mod sized;
 pub mod technique;
 pub mod trajectory;
 pub mod transparency;

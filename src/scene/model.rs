@@ -290,6 +290,14 @@ impl Figure {
         self.dpi_of_file().unwrap_or(DEFAULT_DPI)
     }
 
+    /// Pixels of a point, 1/72 inch: by its dots per inch; where it says none, a point of a picture up to 1280 × 720 is 4/3 pixels, and of a
+    /// larger one as much larger, so that lines keep their share of it as text does.
+    pub fn point_px(&self) -> f64 {
+        let [w, h] = self.pixels().map(f64::from);
+        let larger = (w / 1280.0).min(h / 720.0).max(1.0);
+        self.dpi_of_file().unwrap_or(DEFAULT_DPI * larger) / POINTS_PER_INCH
+    }
+
     /// The size of the text, pixels, where the scene gives it, or a size on paper.
     pub fn text_px(&self) -> Option<f64> {
         let [least, most] = [*TextSize::RANGE_PX.start(), *TextSize::RANGE_PX.end()];

@@ -10,7 +10,9 @@ use crate::{
 };
 
 /// The unit of effects' parameters that are lengths in the picture.
-const PIXELS: &str = "pixels";
+const PIXELS: [&str; 2] = ["pixels", POINTS];
+/// The one of those that follow the size of the picture, or its dots per inch: [`crate::scene::Figure::point_px`].
+pub const POINTS: &str = "points";
 
 impl Scene {
     /// The scene for a picture that is `factor` > 0 times as wide and high as the one that its lengths in pixels are meant for, and whose text
@@ -61,7 +63,7 @@ fn size_lens(lens: &mut Lens, factor: f64) {
 
 fn size_effect(used: &mut EffectUse, factor: f64) {
     let Some(definition) = find(&used.effect) else { return };
-    for parameter in definition.parameters.iter().filter(|parameter| parameter.unit == PIXELS) {
+    for parameter in definition.parameters.iter().filter(|parameter| PIXELS.contains(&&*parameter.unit)) {
         let ParameterKind::Number { min, max } = parameter.kind else { continue };
         let given = used.number(&parameter.name);
         let number = given.or(match parameter.fallback {
@@ -101,7 +103,8 @@ mod tests {
         };
         let view = Lens::plain("view", BestViewLens { shown }, [0.0; 3]);
         let mut lines = Lens::plain("lines", LensKind::default(), [0.0; 3]);
-        let width = find("wireframe").unwrap().parameters.iter().find(|own| own.unit == PIXELS).unwrap().name.clone();
+        let width =
+            find("wireframe").unwrap().parameters.iter().find(|own| PIXELS.contains(&&*own.unit)).unwrap().name.clone();
         lines.effects = vec![used("wireframe", &[]), used("wireframe", &[(&width, 2.0)]), used("sepia", &[])];
         scene.lenses = vec![view, lines];
         let half = scene.sized(0.5, 14.0);
@@ -110,11 +113,17 @@ mod tests {
         assert_eq!(half.layout.margin_px, 0.5 * scene.layout.margin_px);
         assert_eq!(half.figure.text_px(), Some(7.0));
         let effects = &half.lenses[1].effects;
-        let default =
-            match find("wireframe").unwrap().parameters.iter().find(|own| own.unit == PIXELS).unwrap().fallback {
-                Fallback::Value(DefaultValue::Number(number)) => number,
-                _ => panic!("a width has a default"),
-            };
+        let default = match find("wireframe")
+            .unwrap()
+            .parameters
+            .iter()
+            .find(|own| PIXELS.contains(&&*own.unit))
+            .unwrap()
+            .fallback
+        {
+            Fallback::Value(DefaultValue::Number(number)) => number,
+            _ => panic!("a width has a default"),
+        };
         assert_eq!(effects[0].number(&width), Some(0.5 * default));
         assert_eq!(effects[1].number(&width), Some(1.0));
         assert_eq!(effects[2], scene.lenses[1].effects[2], "what is not in pixels stays");

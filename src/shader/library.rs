@@ -139,6 +139,7 @@ files! {
     TRANSLUCENT = "pass/translucent.wgsl";
     LINK_SLOTS = "pass/link-slots.wgsl";
     FILTER = "pass/filter.wgsl";
+    AMBIENT_OCCLUSION = "pass/ambient-occlusion.wgsl";
     RESOLVE = "pass/resolve.wgsl";
     NARROW = "pass/narrow.wgsl";
     DEFORM = "lib/deform.wgsl";

@@ -1,7 +1,7 @@
 //! How lines look: `line_at` and what it calls, for the pass that draws edges, on both back ends.
 //!
 //! A line belongs to the effect that draws it. Scene styles of lenses above replace it, if a scene style drew it, as they
-//! replace the surface it lies on; lines instead of surfaces stay. Post styles colour it as they colour surfaces; filters
+//! replace the surface it lies on; lines instead of surfaces stay, and those over surfaces. Post styles colour it as they colour surfaces; filters
 //! leave it sharp. What is hidden has no lines.
 
 use std::fmt::Write as _;
@@ -112,16 +112,17 @@ fn specialised(text: &mut String, writer: &Writer) {
             text.push_str(&branch(&conditions, &format!("opacity = {left};")));
         }
         match (handler.kind, handler.lines) {
-            (EffectKind::Post, _) => text.push_str(&writer.statement(step, handler)),
+            (EffectKind::Post, false) => text.push_str(&writer.statement(step, handler)),
             (EffectKind::Hide, false) => {
                 hidden.push_str(&branch(&[&scope[..], &[hides(handler, &first, "&&")]].concat(), "opacity = 0.0;"));
             }
             (_, true) => {
                 let mut conditions = [&[format!("step == {number}u")][..], &scope].concat();
-                if handler.kind == EffectKind::Hide {
-                    conditions.push(hides(handler, &first, "||"));
-                } else {
-                    drawn.push(number);
+                match handler.kind {
+                    EffectKind::Hide => conditions.push(hides(handler, &first, "||")),
+                    EffectKind::Scene => drawn.push(number),
+                    // What lies over surfaces stays, whatever they look like.
+                    _ => {}
                 }
                 let color = format!("color = {}({first}).line_color;", handler.own("parameters"));
                 let faint = match share.filter(|_| handler.kind != EffectKind::Hide) {
@@ -203,7 +204,7 @@ fn line_at(styled: &str, gone: &str) -> String {
             opacity = select(opacity * (1.0 - share), 0.0, by.border == 0u);
         }}
         is_hidden |= is_meant && by.kind == HIDE && hides(fragment, by) && hides(other, by);
-        let draws = by.kind == SCENE_WITH_LINES || (by.kind == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
+        let draws = by.kind == SCENE_WITH_LINES || by.kind == POST_WITH_LINES || (by.kind == HIDE_WITH_LINES && (hides(fragment, by) || hides(other, by)));
         if is_meant && draws && i == range.x + step {{
             color = line_color(by);
             opacity = select(parameters[by.weight].x, 1.0, by.blend == 0u) * share;
@@ -251,4 +252,5 @@ const SCENE: u32 = 1u;
 const SCENE_WITH_LINES: u32 = 2u;
 const HIDE: u32 = 3u;
 const HIDE_WITH_LINES: u32 = 4u;
+const POST_WITH_LINES: u32 = 5u;
 ";

@@ -13,11 +13,11 @@ use crate::{
         geometry::{self, Drawn, NOTHING_CUT},
         hiding::{self, Eye},
         library::{
-            BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM, DEPTH_CODE, FILTER,
-            FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS, HOLE, LAYERS,
-            LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW, SHADOW_CUT,
-            SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS, SURFACE,
-            TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
+            AMBIENT_OCCLUSION, BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM,
+            DEPTH_CODE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS,
+            HOLE, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE,
+            SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS,
+            STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
         lining,
         plan::{Plan, form::Form, lens_test::LensTest, program::Program},
@@ -72,6 +72,8 @@ pub enum Module {
     Sections(Program),
     /// One direction of a neighbourhood filter: the number of its handler.
     Filter(u32),
+    /// How much of the sky is seen, as far as the picture tells.
+    AmbientOcclusion,
     /// The mean of samples.
     Resolve,
     /// Lists of invokers narrowed to what tiles show.
@@ -228,6 +230,7 @@ impl Module {
             // Two texts, merged.
             Self::Forward(_) => &[],
             Self::Filter(_) => &[PACKED, FILTER],
+            Self::AmbientOcclusion => &[VIEW, VIEW_UNIFORM, SURFACE, AMBIENT_OCCLUSION],
             Self::Resolve => &[RESOLVE],
             Self::Narrow => &[VIEW, VIEW_UNIFORM, NARROW],
             Self::Refine(_) => &[SURFACE, DEFORM, REFINE],

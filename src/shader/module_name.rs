@@ -40,6 +40,7 @@ impl Module {
             Self::Regions(_) => "regions".to_owned(),
             Self::Sections(program) => format!("sections{}", names::of_hidden(program)),
             Self::Filter(effect) => format!("filter {}", handlers()[*effect as usize].name),
+            Self::AmbientOcclusion => "ambient occlusion".to_owned(),
             Self::Resolve => "resolve".to_owned(),
             Self::Narrow => "narrow".to_owned(),
             Self::Refine(_) => "refine".to_owned(),

@@ -181,6 +181,7 @@ fn all_modules() -> Vec<Module> {
         Module::Geometry(None),
         Module::Shadow(None),
         Module::Sprite,
+        Module::AmbientOcclusion,
         Module::Resolve,
         Module::Narrow,
         Module::Refine(DeformPlan::default()),

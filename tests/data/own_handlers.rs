@@ -45,7 +45,7 @@ pub fn trials() -> Vec<Trial> {
 fn drawn_alike(studio: &mut Studio, scene: &Scene) -> Result<(), Failed> {
     let mut draw = |scene: &Scene, backend| {
         let aovs = studio::ALL;
-        studio.render(scene, &Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: true, backend })
+        studio.render(scene, &Request { aovs, statistics: true, backend, ..Request::plain(SIZE) })
     };
     let [one, other] = [draw(scene, Backend::Specialised)?, draw(scene, Backend::Uber)?];
     if one.rgba != other.rgba || one.depth != other.depth || one.object_id != other.object_id {

@@ -55,7 +55,7 @@ fn check(path: &Path) -> Result<(), Failed> {
     }
     let mut draw = |backend: Backend| {
         let aovs = Aovs { depth: true, object_id: true, normal: false, lens_mask: true };
-        let request = Request { size: [240, 135], samples: 2, transparent: false, aovs, statistics: false, backend };
+        let request = Request { samples: 2, aovs, backend, ..Request::plain([240, 135]) };
         figure::draw_untitled(&mut studio, &scene, &request)
     };
     let (a, b) = (draw(Backend::Specialised)?, draw(Backend::Uber)?);

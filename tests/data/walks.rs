@@ -281,7 +281,6 @@ fn check(file: &Path) -> Result<(), Failed> {
 
 fn drawn(studio: &mut Studio, scene: &Scene) -> Result<Picture, Failed> {
     let aovs = Aovs { object_id: true, ..Aovs::default() };
-    let request =
-        Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: false, backend: Default::default() };
+    let request = Request { aovs, ..Request::plain(SIZE) };
     Ok(studio.render(scene, &request)?)
 }

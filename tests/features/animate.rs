@@ -99,14 +99,7 @@ fn a_studio_that_drew_other_frames_draws_the_same_bytes() {
     let film = Film::new(&scene()).unwrap();
     let draw = |studio: &mut veduta::render::picture::Studio, frame| {
         let scene = film.scene(frame).unwrap();
-        let request = Request {
-            size: scene.figure.size,
-            samples: 2,
-            transparent: false,
-            aovs: Default::default(),
-            statistics: false,
-            backend: Default::default(),
-        };
+        let request = Request { samples: 2, ..Request::plain(scene.figure.size) };
         figure::draw(studio, &scene, &request).unwrap().rgba
     };
     let mut one = of_scene(&scene());
@@ -193,14 +186,7 @@ fn a_frame_with_a_history_does_not_depend_on_which_frames_are_drawn() {
     let fading: Vec<u32> = (0..film.frames())
         .filter(|frame| {
             let scene = film.scene(*frame).unwrap();
-            let request = Request {
-                size: scene.figure.size,
-                samples: 1,
-                transparent: false,
-                aovs: Default::default(),
-                statistics: false,
-                backend: Default::default(),
-            };
+            let request = Request { ..Request::plain(scene.figure.size) };
             let alone = figure::draw(&mut studio, &scene, &request).unwrap().rgba;
             let drawn = image::open(all.join(format!("{frame:04}.png"))).unwrap().into_rgba8();
             drawn.pixels().map(|p| p.0).ne(alone)

@@ -25,14 +25,7 @@ fn square(rest: &str) -> Scene {
 }
 
 fn request(size: [u32; 2]) -> Request {
-    Request {
-        size,
-        samples: 1,
-        transparent: false,
-        aovs: Aovs::default(),
-        statistics: true,
-        backend: Default::default(),
-    }
+    Request { statistics: true, ..Request::plain(size) }
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene) -> Picture {

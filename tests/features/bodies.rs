@@ -18,7 +18,7 @@ const SIZE: [u32; 2] = [320, 200];
 const BACKENDS: [Backend; 2] = [Backend::Specialised, Backend::Uber];
 
 fn draw(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    let request = Request { aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 
@@ -152,7 +152,7 @@ fn a_glow_is_as_strong_as_rays_come_close_to_any_of_many_buildings() {
         .flat_map(|t| [[0, 1], [1, 2], [2, 0]].map(|pair| pair.map(|k| t.corners[k] - view.camera.eye)))
         .collect();
     for backend in BACKENDS {
-        let request = Request { size: SIZE, samples: 1, transparent: true, aovs: ALL, statistics: false, backend };
+        let request = Request { transparent: true, aovs: ALL, backend, ..Request::plain(SIZE) };
         let drawn = studio.render(&scene, &request).expect("a picture");
         let depth = drawn.depth.as_ref().expect("depth");
         let (mut glowing, mut errors) = (0, Vec::new());

@@ -20,7 +20,7 @@ const SIZE: [u32; 2] = [320, 200];
 const BACKENDS: [Backend; 2] = [Backend::Specialised, Backend::Uber];
 
 fn draw(studio: &mut Studio, scene: &Scene, samples: u32, backend: Backend) -> Picture {
-    let request = Request { size: SIZE, samples, transparent: false, aovs: ALL, statistics: true, backend };
+    let request = Request { samples, aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 

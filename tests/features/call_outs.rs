@@ -9,7 +9,7 @@ use veduta::{
         overlays::Standing,
         scene_file::{Options, parse},
     },
-    render::picture::{Aovs, Picture, Request, Studio},
+    render::picture::{Picture, Request, Studio},
     scene::Scene,
 };
 
@@ -58,14 +58,7 @@ fn four(name: &str, at: [f64; 3], overlay: &str) -> String {
 const PLAIN: &str = "frame = \"none\"\nline = \"none\"\n";
 
 fn request(size: [u32; 2]) -> Request {
-    Request {
-        size,
-        samples: 1,
-        transparent: false,
-        aovs: Aovs::default(),
-        statistics: true,
-        backend: Default::default(),
-    }
+    Request { statistics: true, ..Request::plain(size) }
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene) -> Picture {

@@ -590,3 +590,24 @@ fn what_a_scene_is_about_has_to_be_there() {
     }
     assert!(!Path::new(&picture).exists() && !Path::new(&frames).join("0000.png").exists());
 }
+
+/// A picture from below the ground, or from within a house, says so: it is black or walls, and nothing else tells why.
+#[test]
+fn an_eye_where_nobody_stands_is_told() {
+    let folder = Folder::new("eye");
+    let picture = folder.path("x.png");
+    let said = |eye: &str| {
+        let eye = format!("camera.eye=[{eye}]");
+        let of = ["render", "builtin:square", "-o", &picture, "--size", "32x24"];
+        let camera = ["--set", &eye, "--set", "camera.target=[0, 0, 3]"];
+        let output = run(&[&of[..], &camera].concat());
+        assert_eq!(code(&output), 0);
+        err(&output)
+    };
+    let below = said("20, -40, -3");
+    assert!(below.contains("m below the ground") && !below.contains("in building"), "{below}");
+    let within = said("-60, -14, 3");
+    assert!(within.contains("the eye is in building \"church\"") && !within.contains("below the ground"), "{within}");
+    let free = said("20, -40, 12");
+    assert!(!free.contains("the eye is"), "{free}");
+}

@@ -210,7 +210,7 @@ fn shows(lens: &Lens, city: usize) -> Shows {
 }
 
 fn draw(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    let request = Request { aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 
@@ -404,7 +404,7 @@ fn same_as(plain: &Scene, through: &Scene, most: u8, what: &str) {
     };
     for (backend, hides_sky) in [(Backend::Specialised, false), (Backend::Uber, false), (Backend::Specialised, true)] {
         let (plain, through) = (&with_sky(plain, hides_sky), &with_sky(through, hides_sky));
-        let request = Request { size: SIZE, samples: 3, transparent: false, aovs: ALL, statistics: false, backend };
+        let request = Request { samples: 3, aovs: ALL, backend, ..Request::plain(SIZE) };
         let wanted = a.render(plain, &request).expect("a picture");
         let found = b.render(through, &request).expect("a picture");
         assert!(wanted.normal == found.normal, "{what} {backend:?}: normals");
@@ -606,8 +606,7 @@ fn tiles_of_a_large_figure_show_the_same() {
     scene.lenses = vec![showing("blocks", ball(at, 14.0), lod("1"))];
     let size = [4400, 8];
     let cities = [level(&studio, "2"), level(&studio, "1")];
-    let request =
-        Request { size, samples: 1, transparent: false, aovs: ALL, statistics: true, backend: Backend::Specialised };
+    let request = Request { aovs: ALL, statistics: true, backend: Backend::Specialised, ..Request::plain(size) };
     let drawn = studio.render(&scene, &request).expect("a picture");
     let around = Aabb { min: DVec3::splat(-1e3), max: DVec3::splat(1e3) };
     let view = View::new(scene.camera.expect("a camera"), size, &around).expect("a view");
@@ -635,14 +634,7 @@ fn what_cannot_be_shown_is_one_clear_line() {
         (flat, scaled, "[lens.0] content.to: is missing: a lens without end has no middle to put it to"),
     ] {
         scene.lenses = vec![showing("wrong", shape, content)];
-        let request = Request {
-            size: SIZE,
-            samples: 1,
-            transparent: false,
-            aovs: ALL,
-            statistics: false,
-            backend: Backend::Specialised,
-        };
+        let request = Request { aovs: ALL, backend: Backend::Specialised, ..Request::plain(SIZE) };
         let message = studio.render(&scene, &request).expect_err(wanted).to_string();
         assert!(message.contains(wanted) && !message.contains('\n'), "{message}\n  wanted {wanted}");
         scene.lenses[0].enabled = false;

@@ -16,7 +16,7 @@ use veduta::{
 const SIZE: [u32; 2] = [160, 100];
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    let request = Request { aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 
@@ -117,7 +117,7 @@ fn a_lens_with_nothing_in_it_adds_no_pass() {
     let mut stage = Stage::new();
     let over = stage.studio.extent().max.z - stage.middle.z;
     for backend in [Backend::Specialised, Backend::Uber] {
-        let without = |aovs| Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: true, backend };
+        let without = |aovs| Request { aovs, statistics: true, backend, ..Request::plain(SIZE) };
         for (up, place) in [(over + 25.0, "in the air"), (-400.0, "in the ground")] {
             let ball = stage.ball(up, 8.0);
             for effect in ["sepia", "blur", "x-ray", "eraser", "wireframe", "transparent"] {

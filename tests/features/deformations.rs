@@ -51,7 +51,7 @@ const STEPS: [&str; 7] = [
 ];
 
 fn request(backend: Backend) -> Request {
-    Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend }
+    Request { aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) }
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene) -> Picture {

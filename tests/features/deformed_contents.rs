@@ -45,7 +45,7 @@ fn content(content: &str, shape: &str) -> String {
 }
 
 fn request(backend: Backend) -> Request {
-    Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend }
+    Request { aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) }
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {

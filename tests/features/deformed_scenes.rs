@@ -7,10 +7,7 @@ use glam::DVec3;
 use veduta::{
     figure::scene_file::{Options, read},
     geom::deform::Deformers,
-    render::{
-        frame::Backend,
-        picture::{Picture, Request, Studio},
-    },
+    render::picture::{Picture, Request, Studio},
     scene::Scene,
     view::View,
 };
@@ -25,14 +22,7 @@ fn scene_of(name: &str) -> Scene {
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene) -> Picture {
-    let request = Request {
-        size: SIZE,
-        samples: 1,
-        transparent: false,
-        aovs: ALL,
-        statistics: true,
-        backend: Backend::default(),
-    };
+    let request = Request { aovs: ALL, statistics: true, ..Request::plain(SIZE) };
     studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -35,7 +35,7 @@ fn showing(form: Form, focus: impl Into<Region>) -> Lens {
 }
 
 fn request(backend: Backend) -> Request {
-    Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend }
+    Request { aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) }
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {

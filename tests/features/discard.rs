@@ -264,7 +264,7 @@ fn both_back_ends_hide_the_same() {
         let mut scene = scene(camera, vec![lens("grey", vec![shape.clone()], "greyscale"), both]);
         scene.sun.shadows = true;
         let mut draw = |backend: Backend| -> Picture {
-            let request = Request { size: SIZE, samples: 2, transparent: false, aovs: ALL, statistics: true, backend };
+            let request = Request { samples: 2, aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) };
             studio.render(&scene, &request).expect("a picture")
         };
         let (a, b) = (draw(Backend::Specialised), draw(Backend::Uber));

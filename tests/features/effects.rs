@@ -7,7 +7,7 @@ use glam::DVec3;
 use veduta::{
     geom::Shape,
     lens::{EffectUse, Lens, Parameter, color},
-    render::picture::{Aovs, Picture, Request, Studio},
+    render::picture::{Picture, Request, Studio},
     scene::Scene,
     shader::{EffectDefinition, EffectKind, PerObject, effect::find, effects},
     view::Camera,
@@ -204,14 +204,7 @@ fn blur_is_a_gaussian_of_the_lens_own_unmasked_picture() {
 
 /// One sample, nothing behind the city.
 fn transparent() -> Request {
-    Request {
-        size: SIZE,
-        samples: 1,
-        transparent: true,
-        aovs: Aovs::default(),
-        statistics: false,
-        backend: Default::default(),
-    }
+    Request { transparent: true, ..Request::plain(SIZE) }
 }
 
 #[test]
@@ -415,7 +408,7 @@ fn marble_stays_in_the_stone_and_fades_with_distance() {
 
 /// Whether some of these effects draw edges.
 fn draws_lines(effects: &[&str]) -> bool {
-    effects.iter().any(|e| ["wireframe", "hidden-line"].contains(e))
+    effects.iter().any(|name| find(name).is_some_and(|effect| effect.lines))
 }
 
 /// Whether some of these effects are opacity rules.

@@ -8,19 +8,12 @@ use veduta::{
         scene_file::{Options, parse},
     },
     lens::best_view::LocalView,
-    render::picture::{Aovs, Picture, Request},
+    render::picture::{Picture, Request},
     scene::Scene,
 };
 
 fn request(size: [u32; 2]) -> Request {
-    Request {
-        size,
-        samples: 4,
-        transparent: false,
-        aovs: Aovs::default(),
-        statistics: true,
-        backend: Default::default(),
-    }
+    Request { samples: 4, statistics: true, ..Request::plain(size) }
 }
 
 /// The built-in town with an overlay of this size, whose eye is so far from its middle.

@@ -44,14 +44,7 @@ fn scene_of(effect: EffectUse) -> Scene {
 }
 
 fn request(samples: u32, transparent: bool) -> Request {
-    Request {
-        size: SIZE,
-        samples,
-        transparent,
-        aovs: Default::default(),
-        statistics: true,
-        backend: Default::default(),
-    }
+    Request { samples, transparent, statistics: true, ..Request::plain(SIZE) }
 }
 
 fn bytes(color: [f32; 3]) -> [u8; 4] {
@@ -187,14 +180,7 @@ fn over(background: [f32; 3], size: [u32; 2], transparent: bool, pieces: Vec<Pie
     let away = Camera::looking(DVec3::new(0.0, 0.0, 500.0), DVec3::new(0.0, 1.0, 1000.0), 0.5);
     let mut scene = scene(away, vec![]);
     scene.style.background = Background::Color(background);
-    let request = Request {
-        size,
-        samples: 1,
-        transparent,
-        aovs: Default::default(),
-        statistics: false,
-        backend: Default::default(),
-    };
+    let request = Request { transparent, ..Request::plain(size) };
     studio.render_with(&scene, &request, &Furniture { pieces }).expect("a picture")
 }
 

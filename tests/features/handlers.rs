@@ -23,7 +23,7 @@ fn draw(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
 
 fn draw_of_size(studio: &mut Studio, scene: &Scene, size: [u32; 2], backend: Backend) -> Picture {
     let aovs = Aovs { lens_mask: true, ..Aovs::default() };
-    let request = Request { size, samples: 2, transparent: false, aovs, statistics: true, backend };
+    let request = Request { samples: 2, aovs, statistics: true, backend, ..Request::plain(size) };
     studio.render(scene, &request).expect("a picture")
 }
 

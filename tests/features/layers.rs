@@ -260,6 +260,25 @@ fn x_ray_shows_faces_by_how_they_are_seen() {
     }
 }
 
+/// A layer behind another is fainter than it, by as much as is asked.
+#[test]
+fn x_ray_does_not_pile_up() {
+    let pane = |name, x| Pane { name, x, low: [0, 0], high: [10_000, 10_000], material: 0 };
+    let mut studio = studio_of(&[pane(0, 0), pane(1, 1_000), pane(2, 2_000)]);
+    let at = DVec3::new(0.0, 5.0, 5.0);
+    for behind in [0.0_f64, 0.45, 1.0] {
+        let numbers = [("exponent", 0.0), ("least", 0.4), ("behind", behind)];
+        let mut scene = of_context(vec![with_numbers("x-ray", &numbers)]);
+        scene.camera = Some(orthographic(at - 20.0 * DVec3::X, at, 11.0));
+        let through: f64 = (0..3).map(|layer| 1.0 - 0.4 * behind.powi(layer)).product();
+        for backend in [Backend::Specialised, Backend::Uber] {
+            let found = transparency(&mut studio, &scene, backend, SIZE);
+            let middle = f64::from(found[(SIZE[1] / 2 * SIZE[0] + SIZE[0] / 2) as usize][3]);
+            assert!((middle - through).abs() < 2e-4, "{behind} {backend:?}: {middle}, {through}");
+        }
+    }
+}
+
 #[test]
 fn x_ray_shows_floors_faintly() {
     let [up, down] = ["[[0, 1, 2, 3]]", "[[3, 2, 1, 0]]"];

@@ -4,10 +4,7 @@
 use crate::studio::*;
 use glam::DVec3;
 use veduta::{
-    render::{
-        frame::Backend,
-        picture::{Picture, Request, Studio},
-    },
+    render::picture::{Picture, Request, Studio},
     scene::{BaseStyle, Scene, Style, Sun},
     view::{Camera, View},
 };
@@ -41,14 +38,7 @@ fn sunny(camera: Camera, azimuth_deg: f64, elevation_deg: f64, shadows: bool) ->
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene) -> Picture {
-    let request = Request {
-        size: SIZE,
-        samples: 1,
-        transparent: false,
-        aovs: ALL,
-        statistics: false,
-        backend: Backend::default(),
-    };
+    let request = Request { aovs: ALL, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 

@@ -16,6 +16,8 @@ use veduta::{
 const SIZE: [u32; 2] = [200, 150];
 const AT: DVec3 = DVec3::new(5.0, 5.0, 5.0);
 const WIDTH: f64 = 2.0;
+/// Where a figure says no dots per inch, and is no larger than 1280 × 720.
+const POINTS_PER_PX: f64 = 0.75;
 
 /// The cube of `citydata`, 10 m wide, its lowest corner in the origin.
 fn cube() -> Studio {
@@ -34,7 +36,7 @@ fn around(radius: f64) -> Shape {
 fn drawing(effect: &str) -> EffectUse {
     let parameters = [
         ("line_color".to_owned(), Parameter::Text("#ff0000".into())),
-        ("line_width".to_owned(), Parameter::Number(WIDTH)),
+        ("line_width".to_owned(), Parameter::Number(POINTS_PER_PX * WIDTH)),
     ];
     EffectUse { parameters: parameters.into(), ..used(effect) }
 }
@@ -110,7 +112,7 @@ fn hidden_lines_are_not_drawn() {
     let mut studio = cube();
     let view = View::new(camera(), SIZE, &studio.extent()).expect("a view");
     let without = [
-        ("line_width".to_owned(), Parameter::Number(0.25)),
+        ("line_width".to_owned(), Parameter::Number(0.25 * POINTS_PER_PX)),
         ("line_color".to_owned(), Parameter::Text("#f7f4ec".into())),
     ];
     let paper = |l: EffectUse| vec![with("l", around(30.0), vec![l])];
@@ -131,6 +133,63 @@ fn hidden_lines_are_not_drawn() {
     let on_faces =
         pixels().filter(|(_, p)| distance_px(&view, &middles, *p) < 0.5 && distance_px(&view, &seen, *p) > 4.0);
     assert!(on_faces.map(|(i, _)| assert_eq!(picture.rgba[i], below.rgba[i])).count() > 10);
+}
+
+/// What is seen through has the lines of faces that look at the eye, and those alone; their surfaces stay.
+#[test]
+fn feature_lines_are_of_faces_that_look_at_the_eye() {
+    let mut studio = cube();
+    let view = View::new(camera(), SIZE, &studio.extent()).expect("a view");
+    let clear =
+        EffectUse { parameters: [("opacity".to_owned(), Parameter::Number(0.0))].into(), ..used("transparent") };
+    let mut own = drawing("feature-lines");
+    own.parameters.insert("fades".into(), Parameter::Boolean(false));
+    let far = DVec3::new(10.0, 10.0, 0.0);
+    let front: Vec<_> = edges().into_iter().filter(|e| !e.contains(&far)).collect();
+    for backend in [Backend::Specialised, Backend::Uber] {
+        let mut of = |effects: Vec<EffectUse>| {
+            let request =
+                Request { backend, aovs: Aovs { object_id: true, ..Aovs::default() }, ..Request::plain(SIZE) };
+
+            studio.render(&scene(camera(), vec![with("l", around(30.0), effects)]), &request).expect("a picture")
+        };
+        let (below, picture) = (of(vec![clear.clone()]), of(vec![clear.clone(), own.clone()]));
+        assert!(lines_are_at(&picture, &below, &view, &front, &[]) > 150, "{backend:?}");
+        assert_eq!(picture.object_id, below.object_id, "{backend:?}: lines are no surfaces");
+        // All edges, where all are asked for.
+        own.parameters.insert("faces_front".into(), Parameter::Boolean(false));
+        assert!(lines_are_at(&of(vec![clear.clone(), own.clone()]), &below, &view, &edges(), &[]) > 200);
+        own.parameters.insert("faces_front".into(), Parameter::Boolean(true));
+    }
+}
+
+/// Lines of `edges` are on average of samples as wide as they say, on the nearer side of a silhouette.
+#[test]
+fn edges_are_as_wide_as_they_say() {
+    let mut studio = cube();
+    // Straight from the south: the upper side of the cube lies across the picture.
+    let eye = orthographic(AT - 40.0 * DVec3::Y, AT, 15.0);
+    for px in [0.5, 1.0, 1.5, 3.0, 6.0] {
+        let parameters = [
+            ("color".to_owned(), Parameter::Text("#ff0000".into())),
+            ("strength".to_owned(), Parameter::Number(1.0)),
+            ("width".to_owned(), Parameter::Number(POINTS_PER_PX * px)),
+        ];
+        let black = EffectUse { parameters: [("amount".to_owned(), Parameter::Number(1.0))].into(), ..used("darken") };
+        let lines = EffectUse { parameters: parameters.into(), ..used("edges") };
+        let mut asked = scene(eye, vec![]);
+        asked.style.effects = vec![black, lines];
+        let picture = studio.render(&asked, &Request { samples: 64, ..Request::plain(SIZE) }).expect("a picture");
+        // From the sky to the middle of the cube.
+        let red = |y: u32| {
+            let [r, g, b, _] = picture.rgba[(y * SIZE[0] + SIZE[0] / 2) as usize].map(f64::from);
+            if g + b < 1.0 { crate::light::decoded([r / 255.0; 3])[0] } else { 0.0 }
+        };
+        let rows: f64 = (0..SIZE[1] / 2).map(red).sum();
+        println!("{px} px: {rows}");
+        // The row that the silhouette lies in is half sky.
+        assert!((rows - px).abs() < 0.6 + 0.05 * px, "{px} px are {rows}");
+    }
 }
 
 #[test]
@@ -254,7 +313,8 @@ fn lines_are_the_same_on_both_back_ends_and_everywhere_in_the_context() {
     for context in [vec![], vec![used("hidden-line"), used("posterise")], vec![used("wireframe")]] {
         scene.style.effects = context;
         let mut draw = |backend: Backend| {
-            let request = Request { size: SIZE, samples: 3, transparent: true, aovs: ALL, statistics: true, backend };
+            let request =
+                Request { samples: 3, transparent: true, aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) };
             studio.render(&scene, &request).expect("a picture")
         };
         let (a, b) = (draw(Backend::Specialised), draw(Backend::Uber));
@@ -290,7 +350,7 @@ fn a_lens_out_of_view_leaves_no_lines_behind() {
     };
     for backend in [Backend::Uber, Backend::Specialised] {
         let aovs = Aovs::default();
-        let request = Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: false, backend };
+        let request = Request { aovs, backend, ..Request::plain(SIZE) };
         let mut drawn = |scene: &Scene| studio.render(scene, &request).expect("a picture").rgba;
         let plain = drawn(&scene(camera(), vec![]));
         // Never in view before, then in view, and gone again.

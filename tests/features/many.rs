@@ -8,7 +8,7 @@ use veduta::{
     lens::{Border, BorderUnit, Class, Discrete, EffectUse, Lens, LensBody, color},
     render::{
         frame::Backend,
-        picture::{Aovs, Picture, Request, Studio},
+        picture::{Picture, Request, Studio},
     },
     scene::Scene,
     view::{Camera, View},
@@ -39,7 +39,7 @@ fn balls(studio: &Studio, count: usize, overlap: f64) -> Vec<Lens> {
 }
 
 fn draw(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    let request = Request { aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 
@@ -92,14 +92,7 @@ fn more_lenses_than_are_written_out_are_gone_through_tile_by_tile() {
     let mut studio = synthetic(60);
     let middle = studio.extent().center();
     let camera = Camera::looking(middle + DVec3::new(90.0, -140.0, 90.0), middle, 0.9);
-    let request = |backend| Request {
-        size: SIZE,
-        samples: 1,
-        transparent: false,
-        aovs: Aovs::default(),
-        statistics: true,
-        backend,
-    };
+    let request = |backend| Request { statistics: true, backend, ..Request::plain(SIZE) };
     for (count, is_listed) in [(20, false), (60, true)] {
         let scene = scene(camera, balls(&studio, count, 30.0));
         let drawn = studio.render(&scene, &request(Backend::Specialised)).expect("a picture");
@@ -171,14 +164,8 @@ fn what_a_tile_does_not_show_changes_no_byte() {
         }
         let mut draw = |narrows: bool| {
             studio.renderer.settings.narrows_lists = narrows;
-            let request = Request {
-                size: SIZE,
-                samples: 2,
-                transparent: false,
-                aovs: Aovs::default(),
-                statistics: true,
-                backend: Backend::Specialised,
-            };
+            let request =
+                Request { samples: 2, statistics: true, backend: Backend::Specialised, ..Request::plain(SIZE) };
             studio.render(&scene, &request).expect("a picture")
         };
         let [all, narrowed] = [false, true].map(&mut draw);

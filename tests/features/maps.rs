@@ -192,7 +192,7 @@ fn mtl_names_pictures_of_light_and_of_normals() {
 fn normal_at(scene: &Scene, x: f64, z: f64) -> DVec3 {
     let mut studio = of_scene(scene);
     let [one, other] = BOTH.map(|backend| {
-        let request = Request { size: [60, 60], samples: 1, transparent: true, aovs: ALL, statistics: false, backend };
+        let request = Request { transparent: true, aovs: ALL, backend, ..Request::plain([60, 60]) };
         studio.render(scene, &request).expect("a picture").normal.expect("normals")
     });
     assert!(one == other, "both back ends");

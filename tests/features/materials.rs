@@ -169,7 +169,7 @@ pub fn of_file(file: &Path, more: &str) -> Scene {
 pub fn drawn(scene: &Scene) -> Picture {
     let mut studio = of_scene(scene);
     let mut of = |backend| {
-        let request = Request { size: [60, 60], samples: 1, transparent: true, aovs: ALL, statistics: false, backend };
+        let request = Request { transparent: true, aovs: ALL, backend, ..Request::plain([60, 60]) };
         studio.render(scene, &request).expect("a picture")
     };
     let [one, other] = BOTH.map(&mut of);
@@ -347,8 +347,7 @@ fn the_sun_shines_through_holes_and_what_lets_more_than_half_through() {
         let with_lens = Scene { lenses: vec![lens("far", [far], "eraser")], ..scene.clone() };
         for (backend, scene) in BOTH.into_iter().flat_map(|backend| [(backend, &scene), (backend, &with_lens)]) {
             let view = View::new(scene.camera.expect("a camera"), SHADOWED, &studio.extent()).expect("a view");
-            let request =
-                Request { size: SHADOWED, samples: 1, transparent: false, aovs: ALL, statistics: false, backend };
+            let request = Request { aovs: ALL, backend, ..Request::plain(SHADOWED) };
             let drawn = studio.render(scene, &request).expect("a picture");
             let light = |place: DVec3| {
                 let p = view.pixel(place).expect("in the picture");

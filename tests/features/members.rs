@@ -22,7 +22,7 @@ use veduta::{
 const SIZE: [u32; 2] = [240, 160];
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs: studio::ALL, statistics: true, backend };
+    let request = Request { aovs: studio::ALL, statistics: true, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 

@@ -121,7 +121,7 @@ fn back_ends_agree_and_shadows_go() {
         let plain = picture(&mut studio, &scene, SIZE);
         scene.lenses = vec![occlusion(of)];
         let mut draw = |backend| {
-            let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: false, backend };
+            let request = Request { aovs: ALL, backend, ..Request::plain(SIZE) };
             studio.render(&scene, &request).expect("a picture")
         };
         let (a, b) = (draw(Backend::Specialised), draw(Backend::Uber));

@@ -47,7 +47,7 @@ fn some_ids(studio: &Studio, count: usize) -> Vec<String> {
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend, samples: u32) -> Picture {
-    let request = Request { size: SIZE, samples, transparent: false, aovs: ALL, statistics: false, backend };
+    let request = Request { samples, aovs: ALL, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 

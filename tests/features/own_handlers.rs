@@ -70,7 +70,7 @@ impl Town {
     }
 
     fn drawn(&mut self, scene: &Scene, backend: Backend) -> Picture {
-        let request = Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+        let request = Request { aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) };
         self.studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}"))
     }
 
@@ -341,14 +341,7 @@ fn a_region_of_the_docs_goes_with_all_that_lenses_have() {
 fn what_a_region_cannot_do_is_told() {
     let mut town = Town::new();
     let (text, _) = ring(&town, "effects = [\"greyscale\"]\nsprite = {}");
-    let request = Request {
-        size: SIZE,
-        samples: 1,
-        transparent: false,
-        aovs: ALL,
-        statistics: true,
-        backend: Backend::default(),
-    };
+    let request = Request { aovs: ALL, statistics: true, ..Request::plain(SIZE) };
     let scene = town.scene(&text).unwrap();
     let error = town.studio.render(&scene, &request).expect_err("it has no sprite").to_string();
     assert!(error.contains("a region of your own is tested by its function, not by a depth sprite"), "{error}");
@@ -381,14 +374,7 @@ fn a_transform_of_the_docs_puts_a_model_where_it_says() {
         documented("tabletop").replace("\"tabletop\"", "\"squash\"").replace("small.z + p.table", "0.5 * small.z");
     effect::add("squash.wgsl", &text).unwrap();
     let scene = town.scene(&lens("transform = { kind = \"squash\" }")).unwrap();
-    let request = Request {
-        size: SIZE,
-        samples: 1,
-        transparent: false,
-        aovs: ALL,
-        statistics: true,
-        backend: Backend::default(),
-    };
+    let request = Request { aovs: ALL, statistics: true, ..Request::plain(SIZE) };
     let error = town.studio.render(&scene, &request).expect_err("it squashes").to_string();
     assert!(
         error.contains("content.transform: \"squash\" does more than turn, move and scale alike along all axes"),

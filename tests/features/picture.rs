@@ -165,8 +165,7 @@ fn the_mask_of_a_corridor_is_that_of_its_bodies() {
         let drawn = picture(&mut studio, &scene, SIZE);
         assert_eq!(wrong_pixels(&drawn, &view(camera, SIZE), &route, 0), 0);
         assert!(bits(&drawn, 0).iter().filter(|b| **b).count() > 300);
-        let request =
-            Request { size: SIZE, samples: 1, transparent: false, aovs: ALL, statistics: true, backend: Backend::Uber };
+        let request = Request { aovs: ALL, statistics: true, backend: Backend::Uber, ..Request::plain(SIZE) };
         let other = studio.render(&scene, &request).expect("a picture");
         assert!(other.rgba == drawn.rgba && other.lens_mask == drawn.lens_mask, "the back ends differ");
     }
@@ -299,14 +298,7 @@ fn samples_smooth_and_aovs_stay() {
     ball.body = LensBody::Outline;
     let scene = scene(overview(), vec![ball]);
     let one = picture(&mut studio, &scene, SIZE);
-    let request = Request {
-        size: SIZE,
-        samples: 8,
-        transparent: false,
-        aovs: ALL,
-        statistics: true,
-        backend: Default::default(),
-    };
+    let request = Request { samples: 8, aovs: ALL, statistics: true, ..Request::plain(SIZE) };
     let eight = studio.render(&scene, &request).expect("a picture");
     assert_eq!(one.depth, eight.depth);
     assert_eq!(one.object_id, eight.object_id);
@@ -323,8 +315,7 @@ fn nothing_behind_the_city_where_it_is_to_be_transparent() {
     let scene = scene(Camera::looking(DVec3::new(40.0, -30.0, 30.0), DVec3::splat(5.0), 0.8), vec![]);
     for samples in [1, 4] {
         let aovs = Aovs { object_id: true, ..Aovs::default() };
-        let request =
-            Request { size: SIZE, samples, transparent: true, aovs, statistics: false, backend: Default::default() };
+        let request = Request { samples, transparent: true, aovs, ..Request::plain(SIZE) };
         let drawn = studio.render(&scene, &request).expect("a picture");
         let ids = drawn.object_id.expect("ids");
         let solid = drawn.rgba.iter().filter(|p| p[3] == 255).count();

@@ -253,7 +253,7 @@ fn what_a_flat_lens_hides_casts_no_shadow() {
 }
 
 fn draw(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
-    let request = Request { size: SIZE, samples: 2, transparent: false, aovs: ALL, statistics: true, backend };
+    let request = Request { samples: 2, aovs: ALL, statistics: true, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 

@@ -24,7 +24,7 @@ const ALL_SCENES: u64 = 10_000;
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Result<Picture, String> {
     let size = if is_thorough() { THOROUGH_SIZE } else { SIZE };
-    let request = Request { size, samples: 1, transparent: false, aovs: ALL, statistics: true, backend };
+    let request = Request { aovs: ALL, statistics: true, backend, ..Request::plain(size) };
     studio.render(scene, &request).map_err(|error| error.to_string())
 }
 

@@ -35,7 +35,7 @@ fn church() -> Scene {
 
 fn request(backend: Backend, statistics: bool) -> Request {
     let aovs = Aovs { object_id: statistics, ..Aovs::default() };
-    Request { size: [400, 225], samples: 1, transparent: false, aovs, statistics, backend }
+    Request { aovs, statistics, backend, ..Request::plain([400, 225]) }
 }
 
 /// A view of the synthetic town on the tallest of its buildings, over the roofs of others, from a street.

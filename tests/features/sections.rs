@@ -321,14 +321,7 @@ fn what_is_not_taken_away_whole_has_no_sections() {
 }
 
 fn request(backend: Backend) -> Request {
-    Request {
-        size: SIZE,
-        samples: 2,
-        transparent: false,
-        aovs: Aovs { lens_mask: false, ..ALL },
-        statistics: true,
-        backend,
-    }
+    Request { samples: 2, aovs: Aovs { lens_mask: false, ..ALL }, statistics: true, backend, ..Request::plain(SIZE) }
 }
 
 #[test]

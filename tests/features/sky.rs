@@ -135,6 +135,28 @@ fn more_samples_come_nearer_to_what_all_rays_say() {
     }
 }
 
+/// A picture of one sample that looks into itself comes near to what samples bring, so that nobody sees them come; both back ends draw the same.
+#[test]
+fn one_sample_tells_from_its_picture_how_much_sky_is_hidden() {
+    let mut studio = town();
+    for (k, camera) in cameras().into_iter().enumerate() {
+        let mut scene = lit(camera, vec![]);
+        scene.sun.size = 0.0;
+        let mut of = |screen_occlusion: bool, backend: Backend| {
+            let aovs = Aovs { depth: true, normal: true, ..Aovs::default() };
+            let request = Request { aovs, backend, screen_occlusion, ..Request::plain(SIZE) };
+            studio.render(&scene, &request).expect("a picture")
+        };
+        let [open, seen] = [false, true].map(|on| of(on, Backend::Specialised));
+        assert_eq!(of(true, Backend::Uber).rgba, seen.rgba, "view {k}");
+        let [before, after] = [&open, &seen].map(|picture| errors(&scene, picture, &BOXES));
+        println!("view {k}: open {before:?}, seen in the picture {after:?}");
+        assert!(before.2 > 1_000 && after.1 < 0.8 * before.1 && after.0.abs() < 0.75 * before.0.abs(), "view {k}");
+        // Nothing else is another.
+        assert!(open.depth == seen.depth && open.normal == seen.normal, "view {k}");
+    }
+}
+
 fn around(low: [f64; 3], high: [f64; 3]) -> Shape {
     let (low, high) = (DVec3::from(low), DVec3::from(high));
     Shape::Box { center: 0.5 * (low + high), size: high - low, rotation: glam::DQuat::IDENTITY }

@@ -91,7 +91,7 @@ fn painting(shapes: &[Region], sprite: Option<LensSprite>) -> Lens {
 
 fn request(backend: Backend) -> Request {
     let aovs = veduta::render::picture::Aovs { depth: true, ..Default::default() };
-    Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: false, backend }
+    Request { aovs, backend, ..Request::plain(SIZE) }
 }
 
 fn drawn(studio: &mut Studio, scene: &Scene) -> Picture {

@@ -8,7 +8,7 @@ use veduta::{
     lens::{Border, BorderUnit, Class, Discrete, EffectUse, Lens, LensBody, Region, classify::classify},
     render::{
         frame::Backend,
-        picture::{Aovs, Picture, Request, Studio},
+        picture::{Picture, Request, Studio},
     },
     scene::{Scene, Sun, Technique},
     shader::Blend,
@@ -29,8 +29,14 @@ fn cameras() -> [Camera; 3] {
 }
 
 fn draw(studio: &mut Studio, scene: &Scene, samples: u32, transparent: bool) -> Picture {
-    let request =
-        Request { size: SIZE, samples, transparent, aovs: ALL, statistics: true, backend: Backend::Specialised };
+    let request = Request {
+        samples,
+        transparent,
+        aovs: ALL,
+        statistics: true,
+        backend: Backend::Specialised,
+        ..Request::plain(SIZE)
+    };
     studio.render(scene, &request).expect("a picture")
 }
 
@@ -140,14 +146,7 @@ fn they_do_so_with_samples_shadows_and_nothing_behind_and_without_aovs() {
             let found = draw(&mut studio, &by(technique, &scene), 3, transparent);
             assert_same(&found, &wanted, &format!("{technique:?}, transparent: {transparent}"));
         }
-        let request = Request {
-            size: SIZE,
-            samples: 1,
-            transparent: false,
-            aovs: Aovs::default(),
-            statistics: false,
-            backend: Backend::Uber,
-        };
+        let request = Request { backend: Backend::Uber, ..Request::plain(SIZE) };
         let wanted = studio.render(&scene, &request).expect("a picture");
         let found = studio.render(&by(technique, &scene), &request).expect("a picture");
         assert!(found.rgba == wanted.rgba, "{technique:?} without AOVs");

@@ -53,7 +53,7 @@ fn scene_of(effect: EffectUse, from: DVec3, sun_deg: f64) -> Scene {
 
 fn draw(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
     let aovs = Aovs { object_id: true, normal: true, ..Aovs::default() };
-    let request = Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: false, backend };
+    let request = Request { aovs, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 

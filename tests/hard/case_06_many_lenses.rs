@@ -51,8 +51,7 @@ fn masks_of_many_lenses_are_those_of_f64() {
         let backend = if round % 2 == 0 { Backend::Specialised } else { Backend::Uber };
         for camera in cameras(&studio) {
             let scene = studio::scene(camera, list.clone());
-            let request =
-                Request { size: SIZE, samples: 1, transparent: false, aovs: studio::ALL, statistics: false, backend };
+            let request = Request { aovs: studio::ALL, backend, ..Request::plain(SIZE) };
             let drawn = studio.render(&scene, &request).expect("a picture");
             let view = view(camera, SIZE);
             for (bit, lens) in list.iter().enumerate() {

@@ -150,8 +150,7 @@ fn concave_lenses_hold_what_their_surface_goes_around() {
                 let mut masks = Vec::new();
                 for backend in [Backend::Specialised, Backend::Uber] {
                     let aovs = studio::ALL;
-                    let request =
-                        Request { size: SIZE, samples: 1, transparent: false, aovs, statistics: false, backend };
+                    let request = Request { aovs, backend, ..Request::plain(SIZE) };
                     let drawn = studio.render(&scene, &request).expect("a picture");
                     masks.push((studio::bits(&drawn, 0), drawn.depth.expect("depth")));
                 }

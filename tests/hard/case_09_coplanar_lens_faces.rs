@@ -195,14 +195,7 @@ fn a_face_holds_what_a_rasterisers_grid_puts_before_it_and_no_more() {
             let lenses = names.iter().zip(shapes).map(|(n, s)| studio::lens(n, vec![s], "sepia")).collect();
             let scene = studio::scene(camera, lenses);
             for backend in [Backend::Specialised, Backend::Uber] {
-                let request = Request {
-                    size: SIZE,
-                    samples: 1,
-                    transparent: false,
-                    aovs: studio::ALL,
-                    statistics: false,
-                    backend,
-                };
+                let request = Request { aovs: studio::ALL, backend, ..Request::plain(SIZE) };
                 let drawn = coarse.render(&scene, &request).expect("a picture");
                 let normals = drawn.normal.as_ref().expect("normals");
                 for (k, (name, part)) in names.iter().zip(&parts).enumerate() {

@@ -112,14 +112,7 @@ fn rays_along_an_axis_pass_each_box_in_two_layers() {
                 for (opacity, layer) in [(0.6, 0), (0.3, 1), (0.22, 2), (0.18, 3), (0.12, 5)] {
                     let scene = translucent(along.camera, opacity, Transparency::Exact);
                     let aovs = Aovs { depth: true, ..Aovs::default() };
-                    let asked = Request {
-                        size: SIZE,
-                        samples: 1,
-                        transparent: false,
-                        aovs,
-                        statistics: false,
-                        backend: Backend::Specialised,
-                    };
+                    let asked = Request { aovs, backend: Backend::Specialised, ..Request::plain(SIZE) };
                     let depth = studio.render(&scene, &asked).expect("a picture").depth.expect("depths");
                     for (i, (ends, _)) in rays.iter().enumerate().filter(|(_, (_, is_on_border))| !is_on_border) {
                         match ends.get(layer) {

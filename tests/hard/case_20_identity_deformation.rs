@@ -30,7 +30,7 @@ const BACKENDS: [Backend; 2] = [Backend::Specialised, Backend::Uber];
 fn draw(studio: &mut Studio, scene: &Scene, size: [u32; 2], samples: u32, backend: Backend) -> Picture {
     // Masks of lenses are drawn for whoever asks for them.
     let aovs = Aovs { lens_mask: false, ..studio::ALL };
-    let request = Request { size, samples, transparent: false, aovs, statistics: true, backend };
+    let request = Request { samples, aovs, statistics: true, backend, ..Request::plain(size) };
     studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -21,7 +21,7 @@ const BACKENDS: [Backend; 2] = [Backend::Specialised, Backend::Uber];
 
 fn draw(studio: &mut Studio, scene: &Scene, samples: u32, transparent: bool, backend: Backend) -> Picture {
     let aovs = Aovs { lens_mask: false, ..studio::ALL };
-    let request = Request { size: SIZE, samples, transparent, aovs, statistics: false, backend };
+    let request = Request { samples, transparent, aovs, backend, ..Request::plain(SIZE) };
     studio.render(scene, &request).expect("a picture")
 }
 

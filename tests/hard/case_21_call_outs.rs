@@ -54,8 +54,7 @@ fn scene() -> Scene {
 /// By both back ends, and once more.
 fn drawn(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Picture {
     let [one, other, again] = [Backend::Specialised, Backend::Uber, Backend::Specialised].map(|backend| {
-        let request =
-            Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: true, backend };
+        let request = Request { statistics: true, backend, ..Request::plain(size) };
         figure::draw(studio, scene, &request).unwrap_or_else(|e| panic!("{e}"))
     });
     assert!(one.rgba == other.rgba, "both back ends draw the same bytes");

@@ -57,7 +57,7 @@ fn looking(eye: DVec3, way: DVec3) -> Camera {
 
 fn shown(studio: &mut Studio, scene: &Scene, backend: Backend) -> (Vec<[u8; 4]>, Vec<u32>, Vec<u32>) {
     let aovs = Aovs { depth: true, object_id: true, ..Aovs::default() };
-    let request = Request { size: [64, 48], samples: 2, transparent: false, aovs, statistics: false, backend };
+    let request = Request { samples: 2, aovs, backend, ..Request::plain([64, 48]) };
     let picture = studio.render(scene, &request).expect("a picture");
     let depth = picture.depth.expect("depths").iter().map(|d| d.to_bits()).collect();
     (picture.rgba, picture.object_id.expect("ids"), depth)

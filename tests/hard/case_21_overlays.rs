@@ -46,8 +46,7 @@ fn annotations(places: &[[f64; 3]], overlay: &str) -> String {
 
 fn drawn(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Picture {
     let [one, other] = [Backend::Specialised, Backend::Uber].map(|backend| {
-        let request =
-            Request { size, samples: 1, transparent: false, aovs: Aovs::default(), statistics: true, backend };
+        let request = Request { statistics: true, backend, ..Request::plain(size) };
         figure::draw(studio, scene, &request).unwrap_or_else(|e| panic!("{e}"))
     });
     assert_eq!(one.rgba, other.rgba, "both back ends draw the same bytes");

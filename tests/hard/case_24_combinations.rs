@@ -470,7 +470,7 @@ fn compare(studio: &mut Studio, kinds: &[usize], seed: u64) -> Result<[u64; 2], 
     let scene = parsed(&text);
     let view = view_of(&scene);
     let backend = if seed.is_multiple_of(2) { Backend::Specialised } else { Backend::Uber };
-    let request = Request { size: size(), samples: 1, transparent: false, aovs: ALL, statistics: false, backend };
+    let request = Request { aovs: ALL, backend, ..Request::plain(size()) };
     let drawn = studio.render(&scene, &request).map_err(|error| format!("{error}\n{text}"))?;
     let deformers = studio.deformers(&scene, size()).map_err(|error| error.to_string())?;
     let moves = !deformers.0.is_empty();

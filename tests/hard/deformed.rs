@@ -142,8 +142,7 @@ pub fn determinant(value: impl Fn(DVec3) -> DVec3, at: DVec3, step: f64) -> Opti
 
 /// One sample with all AOVs and statistics.
 pub fn drawn(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Picture {
-    let request =
-        Request { size, samples: 1, transparent: false, aovs: studio::ALL, statistics: true, backend: studio.backend };
+    let request = Request { aovs: studio::ALL, statistics: true, backend: studio.backend, ..Request::plain(size) };
     studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}"))
 }
 

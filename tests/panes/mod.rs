@@ -187,5 +187,5 @@ pub fn largest_difference(found: &[[f32; 4]], expected: &[[f64; 4]]) -> f64 {
 }
 
 pub fn request(backend: Backend) -> Request {
-    Request { size: [160, 100], samples: 1, transparent: false, aovs: ALL, statistics: false, backend }
+    Request { aovs: ALL, backend, ..Request::plain([160, 100]) }
 }

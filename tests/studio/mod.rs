@@ -359,8 +359,7 @@ pub fn orthographic(eye: DVec3, target: DVec3, height_m: f64) -> Camera {
 
 /// One unjittered sample with all AOVs and statistics.
 pub fn picture(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Picture {
-    let request =
-        Request { size, samples: 1, transparent: false, aovs: ALL, statistics: true, backend: Default::default() };
+    let request = Request { aovs: ALL, statistics: true, ..Request::plain(size) };
     studio.render(scene, &request).expect("a picture")
 }
 
@@ -411,8 +410,7 @@ pub fn hiding_changes_nothing(studio: &mut Studio, views: u32, size: [u32; 2]) -
         let target = eye + DVec3::new(turn.cos(), turn.sin(), -0.1 * at(0.41)) * 50.0;
         let scene = scene(Camera::looking(eye, target, 0.9), vec![]);
         let samples = if i % 4 == 3 { 3 } else { 1 };
-        let request =
-            Request { size, samples, transparent: false, aovs: ALL, statistics: true, backend: Default::default() };
+        let request = Request { samples, aovs: ALL, statistics: true, ..Request::plain(size) };
         let mut draw = |hides: bool| {
             studio.renderer.settings.culls_hidden = hides;
             let picture = studio.render(&scene, &request).expect("a picture");

@@ -63,9 +63,13 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             studio.model.objects[object as usize].id
         );
     }
+    if let Some(metres) = studio.eye_below_ground(&scene) {
+        log::warn!(
+            "the eye is {metres:.1} m below the ground: what is seen are undersides; `veduta info --at X,Y` tells how high the ground is"
+        );
+    }
     let has = |kind| arguments.aovs.iter().any(|aov| aov.kind == kind);
     let request = Request {
-        size: scene.figure.pixels(),
         samples: scene.figure.samples(),
         transparent: arguments.transparent,
         aovs: Aovs {
@@ -76,6 +80,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         },
         statistics: arguments.stats.is_some(),
         backend: arguments.shaders.into(),
+        ..Request::plain(scene.figure.pixels())
     };
     let progress = terminal::Progress::spinning("drawing", global);
     let format = Format::of(&arguments.output).map_err(Failure::usage)?;

@@ -4,6 +4,7 @@ use serde_json::json;
 
 use crate::{
     figure::sheet::{Cell, CellFigure, Sheet},
+    lens::Lens,
     measure::{ratio::Estimate, run::frame_ratio},
     render::{
         picture::{RenderError, Request, Studio},
@@ -41,7 +42,7 @@ pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, Re
     }
     if wants(CellFigure::Occluders) {
         let asked = Request { statistics: true, ..Request::plain(cell.scene.figure.pixels()) };
-        let statistics = studio.render(&cell.scene, &asked)?.statistics;
+        let statistics = studio.render(&with_its_occluders(&cell.scene), &asked)?.statistics;
         let occluders = statistics.lenses.iter().filter_map(|lens| lens.occluders.as_ref());
         let found_by_each: Vec<u64> = occluders.map(|list| list.len() as u64).collect();
         found.touched = Some(match &found_by_each[..] {
@@ -54,6 +55,17 @@ pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, Re
         found.ratio = Some(frame_ratio(studio, &cell.scene, &plain, cell.scene.figure.pixels(), sheet.pairs)?);
     }
     Ok(found)
+}
+
+/// A scene whose occlusion lenses find what they look for: where none of them is enabled, all are. What hides something does so whether or not it is
+/// drawn in another way.
+fn with_its_occluders(scene: &Scene) -> Scene {
+    let mut own = scene.clone();
+    let finds = |lens: &Lens| lens.occluders().is_some();
+    if !own.lenses.iter().any(|lens| finds(lens) && lens.enabled) {
+        own.lenses.iter_mut().filter(|lens| finds(lens)).for_each(|lens| lens.enabled = true);
+    }
+    own
 }
 
 impl Figures {

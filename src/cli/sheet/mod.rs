@@ -272,14 +272,7 @@ fn studio_of<'k>(
 
 /// The request that `veduta render` makes.
 fn request(scene: &Scene) -> Request {
-    Request {
-        size: scene.figure.pixels(),
-        samples: scene.figure.samples(),
-        transparent: false,
-        aovs: Default::default(),
-        statistics: false,
-        backend: Default::default(),
-    }
+    Request { samples: scene.figure.samples(), ..Request::plain(scene.figure.pixels()) }
 }
 
 fn blit(page: &mut [[u8; 4]], width: u32, [x, y]: [u32; 2], rgba: &[[u8; 4]], [w, h]: [u32; 2]) {

@@ -315,9 +315,10 @@ mod tests {
         let plain = of("render = { as = \"flatten\" }");
         assert!(plain.is_plain() && plain == Rendering::of_word("flatten").unwrap());
         let colored = of("render = { as = \"x-ray-color\", color = \"#ff0000\", exponent = 2 }");
-        let [ray, clay] = &colored.cases[0].effects[..] else { panic!("two effects") };
+        let [ray, clay, lines] = &colored.cases[0].effects[..] else { panic!("three effects") };
         assert_eq!((ray.number("exponent"), clay.color("color")), (Some(2.0), Some([1.0, 0.0, 0.0])));
         assert_eq!((ray.color("color"), clay.number("exponent")), (None, None), "each has its own");
+        assert_eq!((&*lines.effect, lines.parameters.len()), ("feature-lines", 0));
     }
 
     #[test]

@@ -61,6 +61,9 @@ impl PipelineKey for LinesKey {
     }
 }
 
+/// The parameters of effects that say which edges are drawn, and how, as `pass/lines.wgsl` numbers them: `LINES_*`.
+const DRAWN_BY: [(&str, u32); 4] = [("flat_edges", 1), ("faces_front", 2), ("fades", 4), ("keep_terrain", 8)];
+
 /// One effect that draws lines in a frame.
 #[derive(Clone, Debug)]
 pub struct LineDraw {
@@ -86,7 +89,10 @@ fn draws(input: &FrameInput, plan: Option<&Plan>, lenses: &[u32]) -> Vec<LineDra
             stage: LineStage {
                 width: value("line_width").unwrap_or(1.0),
                 step: number as u32,
-                flat_edges: u32::from(value("flat_edges").unwrap_or(0.0) != 0.0),
+                drawn: DRAWN_BY
+                    .iter()
+                    .filter(|(name, _)| value(name).is_some_and(|on| on != 0.0))
+                    .fold(0, |drawn, (_, bit)| drawn | bit),
                 reserved: 0,
             },
             reaches: reaches_of(lens, class, input.volumes, &input.view),

@@ -27,6 +27,7 @@
 //! weighted                what found no slot as one layer
 //! stochastic              layers that are there by chance, in place of lists
 //! narrow lists            per-tile lens culling: of many lenses, those that each tile shows something of
+//! ambient occlusion       of one sample, where it is asked for: how much of the sky the picture's places see
 //! lines                   edges, where effects draw them
 //! unfiltered              for each neighbourhood filter in view: its lens' own image over the lens' bounds and what the filter reaches beyond them,
 //! filter down             and the filter, down
@@ -54,6 +55,7 @@ use crate::{
     },
 };
 
+pub mod ambient_occlusion;
 pub mod composite;
 pub mod context;
 pub mod culling_depth;
@@ -185,6 +187,7 @@ table! {
     slots: transparency::slots::SlotLayers,
     stochastic: transparency::stochastic::StochasticLayers,
     narrow: narrow::Narrow,
+    occlusion: ambient_occlusion::AmbientOcclusion,
     lines: lines::Lines,
     filters: filters::Filters,
     classes: reference::region_shade::Classes,

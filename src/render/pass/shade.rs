@@ -75,9 +75,10 @@ pub struct ShadeKey {
     clay: bool,
     /// Where it goes.
     target: ShadeTarget,
-    /// There is a shadow map, and one of the sky.
+    /// There is a shadow map, and one of the sky; or the picture tells how much of that is seen.
     shadows: bool,
     sky: bool,
+    occlusion: bool,
     /// Normals are in the target.
     smooth: bool,
     /// Something has light of its own.
@@ -103,6 +104,7 @@ impl ShadeKey {
             clay: plan.is_clay(),
             shadows: plan.sun.is_some(),
             sky: plan.sky.is_some(),
+            occlusion: plan.has_screen_occlusion(),
             smooth: plan.smooth,
             emits: plan.emits,
             texels_emit: plan.texels_emit,
@@ -139,6 +141,7 @@ impl PipelineKey for ShadeKey {
             (self.target == ShadeTarget::Unfiltered, "unfiltered"),
             (self.shadows, "shadows"),
             (self.sky, "sky"),
+            (self.occlusion, "ambient occlusion"),
             (self.emits, "emission"),
             (self.texels_emit, "of texels"),
             (self.sections, "sections"),
@@ -169,6 +172,7 @@ impl PipelineKey for ShadeKey {
                 ("SUMMED", flag(self.target == ShadeTarget::Sums)),
                 ("SHADOWS", flag(self.shadows)),
                 ("SKY_SHADOWS", flag(self.sky)),
+                ("SCREEN_OCCLUSION", flag(self.occlusion)),
                 ("SMOOTH", flag(self.smooth)),
                 ("EMITS", flag(self.emits)),
                 ("TEXELS_EMIT", flag(self.texels_emit)),

@@ -55,6 +55,7 @@ struct Asked {
     samples: u32,
     masks: bool,
     measured: bool,
+    screen_occlusion: bool,
     furniture: Furniture,
 }
 
@@ -72,6 +73,7 @@ impl Asked {
             samples: 1,
             masks: false,
             measured: false,
+            screen_occlusion: false,
             furniture: furniture::NONE.clone(),
         }
     }
@@ -93,7 +95,7 @@ impl Asked {
         let present = [self.effect.is_some()];
         let city = CityModel::default();
         let tests = Default::default();
-        Operations::new(&[], &[lens], &present, tests, &[&city], &LensTables::default()).expect("operations")
+        Operations::new(&[], &[lens], &present, tests, &[&city], &LensTables::default(), 1.0).expect("operations")
     }
 
     fn volumes(&self) -> Vec<LensVolume> {
@@ -129,6 +131,7 @@ impl Asked {
             masks: self.masks,
             sample: if self.masks { 0 } else { self.samples - 1 },
             samples: self.samples,
+            screen_occlusion: self.screen_occlusion,
             moved: &Moved::default(),
             chord_px: 1.0,
             furniture: &self.furniture,
@@ -175,6 +178,15 @@ fn a_plan_holds_just_the_passes_that_a_scene_calls_for() {
     assert_eq!(plain.passes(), ["geometry", "shade"]);
     let shadows = Asked { sun: Sun::default(), ..plain.clone() };
     assert_eq!(shadows.passes(), ["shadow map", "geometry", "shade"]);
+    let at_once = Asked { screen_occlusion: true, ..shadows.clone() };
+    assert_eq!(at_once.passes(), ["shadow map", "geometry", "ambient occlusion", "shade"]);
+    assert_eq!(
+        Asked { screen_occlusion: true, ..plain.clone() }.passes(),
+        ["geometry", "shade"],
+        "a sun without shadows"
+    );
+    let open = Sun { ambient_occlusion: false, ..Sun::default() };
+    assert_eq!(Asked { sun: open, ..at_once }.passes(), ["shadow map", "geometry", "shade"]);
     let several = Asked { samples: 4, ..plain.clone() };
     assert_eq!(several.passes(), ["geometry", "shade", "resolve"]);
     let text = furniture::Piece::Panel(furniture::Panel {

@@ -20,6 +20,8 @@ pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 pub const FILTERED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 /// Stored depths of an entry and of an exit: the sides of solids.
 pub const SPRITES: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+/// How much of the sky is seen, and the stored depth where that was asked.
+pub const OCCLUSION: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// The picture: sRGB bytes.
 pub const PICTURE: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Lines before they are laid over the picture: linear, premultiplied.

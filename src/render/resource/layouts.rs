@@ -37,7 +37,7 @@ pub static CORNERS: GroupLayout = GroupLayout {
 /// Sprites, group 1: planes of convex volumes, faces of solids.
 pub static PLANES: GroupLayout =
     GroupLayout { label: "planes", entries: &[(1, COMPUTED, STORAGE), (2, COMPUTED, STORAGE)] };
-/// Shade, group 1: surfaces, planes of convex volumes, faces of solids, light, targets.
+/// Shade, group 1: surfaces, planes of convex volumes, faces of solids, light, targets, maps of light.
 pub static SHADE: GroupLayout = GroupLayout {
     label: "shade",
     entries: &[
@@ -52,6 +52,7 @@ pub static SHADE: GroupLayout = GroupLayout {
         (8, S::FRAGMENT, FLOATS),
         (9, S::FRAGMENT, FLOATS),
         (10, S::FRAGMENT, DEPTHS),
+        (11, S::FRAGMENT, FLOATS),
     ],
 };
 /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks, invokers, filtered

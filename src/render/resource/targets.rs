@@ -3,8 +3,8 @@
 use crate::{
     gpu::Gpu,
     render::resource::formats::{
-        COLORS, DEPTH, EMISSIONS, FILTERED, LINES, MASKS, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES, TRANSPARENCY,
-        codes, through,
+        COLORS, DEPTH, EMISSIONS, FILTERED, LINES, MASKS, OCCLUSION, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES,
+        TRANSPARENCY, codes, through,
     },
 };
 
@@ -45,6 +45,8 @@ pub struct Needs {
     pub shadow: u32,
     /// Side of that of what a point of the sky sees, 0 for none.
     pub sky: u32,
+    /// How much of the sky is seen.
+    pub occlusion: bool,
 }
 
 impl Needs {
@@ -73,6 +75,7 @@ impl Needs {
             // Of one size at a time: its whole texture is the map.
             shadow: if self.shadow == 0 { before.shadow } else { self.shadow },
             sky: if self.sky == 0 { before.sky } else { self.sky },
+            occlusion: self.occlusion || before.occlusion,
         }
     }
 }
@@ -144,6 +147,8 @@ pub struct Targets {
     pub shadow: Target,
     /// Depth from a point of the sky (1×1 where not needed).
     pub sky: Target,
+    /// How much of the sky is seen, at half the resolution (1×1 where not needed).
+    pub occlusion: Target,
 }
 
 impl Targets {
@@ -176,6 +181,7 @@ impl Targets {
             self.shown_depth,
             self.shadow,
             self.sky,
+            self.occlusion,
             self.sprite_depth,
         ]
     }
@@ -212,6 +218,7 @@ impl Targets {
         let images = needs.filter_images;
         let filtering = |size: [u32; 3]| if needs.filters > 0 { size } else { [1; 3] };
         let [fours_wide, fours_high] = needs.size.map(|side| side.div_ceil(4));
+        let halves = if needs.occlusion { [w.div_ceil(2), h.div_ceil(2), 1] } else { [1; 3] };
         let mask_size = if needs.mask_layers > 0 { [w, h, needs.mask_layers] } else { [1, 1, 1] };
         Self {
             needs,
@@ -248,6 +255,7 @@ impl Targets {
             shown_depth: make_any("depth of the shown layer", full(needs.shown_layers), OWN_DEPTH, drawn, false),
             shadow: make_any("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn, false),
             sky: make_any("sky map", [needs.sky, needs.sky, 1], DEPTH, drawn, false),
+            occlusion: make_any("ambient occlusion", halves, OCCLUSION, drawn, false),
         }
     }
 }

@@ -38,6 +38,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("engraving"),
     built_in!("blur"),
     built_in!("edges"),
+    built_in!("feature-lines"),
     built_in!("iso-lines"),
     built_in!("eraser"),
     built_in!("cut-away"),

@@ -154,10 +154,10 @@ fn check_lines(file: &File, effect: &EffectDefinition) -> Result<(), FileError> 
     };
     let has_lines = has("line_color", |kind| *kind == ParameterKind::Color)
         && has("line_width", |kind| matches!(kind, ParameterKind::Number { max, .. } if *max <= MOST_LINE_WIDTH))
-        && matches!(effect.kind, EffectKind::Hide | EffectKind::Scene);
+        && matches!(effect.kind, EffectKind::Hide | EffectKind::Scene | EffectKind::Post);
     if effect.lines && !has_lines {
         let message = format!(
-            "lines = true is for kind = \"hide\" or \"scene\" with parameters \"line_color\", a color, and \"line_width\", a \
+            "lines = true is for kind = \"hide\", \"scene\" or \"post\" with parameters \"line_color\", a color, and \"line_width\", a \
              number of at most {MOST_LINE_WIDTH}"
         );
         return Err(file.error(0, message));

@@ -157,3 +157,38 @@ proptest! {
         }
     }
 }
+
+/// `of_sky` of the pass, as the host runs it: its numbers are the place and the size of an effect.
+fn light_of_a_slice() -> std::sync::Arc<HostProgram> {
+    let file = include_str!("../../../shaders/pass/ambient-occlusion.wgsl");
+    let functions =
+        file.split("// Where angles from").nth(1).and_then(|rest| rest.split("// The cosine of the").next());
+    let constants = "const PI: f32 = 3.14159265;\nconst HALF_PI: f32 = 1.57079633;\n//";
+    let effect = "fn effect(place: vec3f, size: vec3f) -> vec3f {\n    \
+        return vec3f(of_sky(place.x, place.y, place.z, size.x), 0.0, 0.0);\n}\n";
+    let text = format!("{constants}{}\n{effect}", functions.expect("the functions"));
+    deformation(&text).expect("they run").host.expect("on the host")
+}
+
+proptest! {
+    #![proptest_config(crate::seeds::config())]
+
+    /// Between any two angles, with the sky anywhere: the closed form of the light of a slice against sums.
+    #[test]
+    fn the_light_of_a_slice_is_the_sum_over_its_angles(
+        n in -1.57..1.57_f64, zenith in -3.14..3.14_f64, ends in [-1.57..1.57_f64, -1.57..1.57_f64]
+    ) {
+        const STEPS: i32 = 4_000;
+        let (low, high) = (n + ends[0].min(ends[1]), n + ends[0].max(ends[1]));
+        let width = (high - low) / f64::from(STEPS);
+        let of = |i: i32| {
+            let angle = low + width * (f64::from(i) + 0.5);
+            let is_sky = (angle - zenith).cos() > 0.0;
+            if is_sky { (angle - n).cos().max(0.0) * angle.sin().abs() * width } else { 0.0 }
+        };
+        let wanted: f64 = (0..STEPS).map(of).sum();
+        let is = light_of_a_slice().vector(DVec3::new(low, high, n), DVec3::splat(zenith), &[]).expect("a number").0.x;
+        // The step at the sky's border may lie half in it.
+        prop_assert!((is - wanted).abs() < 1e-3, "{is}, {wanted}");
+    }
+}
