@@ -55,7 +55,7 @@ impl LightByRays {
         };
         let colors = light::uniform(
             &scene.sun,
-            &LightSample::new(&scene.sun, 0, 1),
+            &LightSample::new(&scene.sun, 0, 1, false),
             &Surround { look: scene.style.look, background: scene.style.background, fade: None },
             [None; 2],
             view.camera.eye,

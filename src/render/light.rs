@@ -25,8 +25,8 @@ pub fn to_sun(sun: &Sun) -> DVec3 {
 
 /// How high the sun must stand to cast shadows, radians. The part of a large disc that is lower counts as if it stood here.
 const LEAST_ELEVATION: f64 = 0.01;
-/// From which diameter on the sun's disc has a point of its own in each sample, radians: two degrees. A smaller one has the same for some samples, at most so
-/// many: its borders of shadows are a few pixels wide, and the sun's map is drawn as often less.
+/// From which diameter on the sun's disc has a point of its own in each sample, radians: two degrees. Seen from far, a smaller one has the same for some
+/// samples, at most so many: its borders of shadows are a few pixels wide, and the sun's map is drawn as often less. In a street they are wide, and would show as many steps.
 const MANY_POINTS_RAD: f64 = 0.035;
 const MOST_HELD: u32 = 4;
 /// A turn of the golden angle, as a part of a whole one.
@@ -150,12 +150,12 @@ fn on_spiral(i: u32, n: u32, stride: f64) -> DVec2 {
 }
 
 impl LightSample {
-    /// That of sample `i` of `n`.
-    pub fn new(sun: &Sun, i: u32, n: u32) -> Self {
+    /// That of sample `i` of `n`. `is_near`: whether the picture shows something much nearer than the rest.
+    pub fn new(sun: &Sun, i: u32, n: u32, is_near: bool) -> Self {
         let middle = to_sun(sun);
         let of_disc = || {
             // A small disc needs fewer points, and each that is new a new map.
-            let held = ((MANY_POINTS_RAD / sun.size) as u32).clamp(1, MOST_HELD);
+            let held = if is_near { 1 } else { ((MANY_POINTS_RAD / sun.size) as u32).clamp(1, MOST_HELD) };
             let p = on_spiral(i / held, n.div_ceil(held), 0.438);
             let (sin, cos) = (TAU * p.y).sin_cos();
             let (aside, up) = middle.any_orthonormal_pair();
@@ -275,18 +275,29 @@ mod tests {
     }
 
     fn of_all(sun: &Sun, n: u32) -> impl Iterator<Item = LightSample> {
-        (0..n).map(move |i| LightSample::new(sun, i, n))
+        (0..n).map(move |i| LightSample::new(sun, i, n, false))
     }
 
     #[test]
     fn one_sample_sees_the_middle_of_the_sun_and_all_of_the_sky() {
         let sun = Sun { size: 0.3, ..Sun::default() };
-        assert_eq!(LightSample::new(&sun, 0, 1), LightSample { to_sun: to_sun(&sun), sky: None });
+        assert_eq!(LightSample::new(&sun, 0, 1, false), LightSample { to_sun: to_sun(&sun), sky: None });
         for sun in [Sun { shadows: false, ..sun }, Sun { ambient_occlusion: false, ..sun }] {
             assert!(of_all(&sun, 16).all(|light| light.sky.is_none()));
         }
         let point = Sun { size: 0.0, ..sun };
         assert!(of_all(&point, 16).all(|light| light.to_sun == to_sun(&point)));
+    }
+
+    #[test]
+    fn points_of_a_small_sun_are_shared_where_all_is_far() {
+        let sun = Sun::default();
+        let points = |is_near: bool| {
+            let mut all: Vec<DVec3> = (0..16).map(|i| LightSample::new(&sun, i, 16, is_near).to_sun).collect();
+            all.dedup();
+            all.len()
+        };
+        assert_eq!([points(false), points(true)], [4, 16]);
     }
 
     #[test]
