@@ -43,13 +43,13 @@ use crate::{
         picture::{Aovs, RenderError, Request, ShownOverlay, Studio},
         stats::{self, Statistics},
     },
-    scene::{CitySpec, Scene},
+    scene::{CitySpec, DEFAULT_SAMPLES, Scene},
     shader::effect,
     view::View,
 };
 
-/// Samples per pixel of a picture that stands still.
-const SAMPLES: u32 = 8;
+/// Samples per pixel of a picture that stands still: as many as a figure has.
+const SAMPLES: u32 = DEFAULT_SAMPLES;
 /// While something moves, milliseconds that a picture may take, a little less than what 20 frames a second leave.
 const MOVING_MS: f64 = 45.0;
 /// The parts of the width and height that pictures are drawn at meanwhile: each has half the pixels of the one before. Steps, since overlays

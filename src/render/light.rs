@@ -297,7 +297,7 @@ mod tests {
             all.dedup();
             all.len()
         };
-        assert_eq!([points(false), points(true)], [4, 16]);
+        assert_eq!([points(false), points(true)], [6, 16]);
     }
 
     #[test]

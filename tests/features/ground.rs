@@ -64,6 +64,34 @@ fn ground_fades_into_what_is_behind_it_in_every_look() {
     }
 }
 
+/// A low sun throws the shadow of a cube of 10 m far beyond all that the city's own boxes hold; it ends where the rays of the sun say.
+#[test]
+fn shadows_on_the_plain_ground_are_whole() {
+    let file = citydata("cube.city.json");
+    let text = format!("veduta = 1\n[city]\nfiles = [{:?}]\n", file.to_str().expect("a path"));
+    let options = figure::scene_file::Options { allow_outside: true, ..Default::default() };
+    let mut scene = figure::scene_file::parse(&text, "cube.toml", &options).unwrap_or_else(|error| panic!("{error}"));
+    let mut studio = of_scene(&scene);
+    // From the west: the shadow lies to the east, 10 m / tan 9° = 63 m long.
+    let elevation = 9.0_f64.to_radians();
+    (scene.sun.azimuth, scene.sun.elevation) = (270.0_f64.to_radians(), elevation);
+    let length = 10.0 / elevation.tan();
+    // Straight from above, 0.5 m a pixel, the cube at the left.
+    let middle = DVec3::new(40.0, 5.0, 0.0);
+    scene.camera = Some(orthographic(middle + 90.0 * DVec3::Z, middle, 0.5 * f64::from(SIZE[1])));
+    let picture = drawn(&mut studio, &scene, Backend::Uber, false);
+    let at = |x: f64, y: f64| {
+        let [w, h] = SIZE.map(f64::from);
+        let (column, row) = (0.5 * w + (x - middle.x) * 2.0, 0.5 * h - (y - middle.y) * 2.0);
+        picture.rgba[row as usize * SIZE[0] as usize + column as usize][..3].iter().map(|c| u32::from(*c)).sum::<u32>()
+    };
+    let open = at(40.0, 25.0);
+    for x in [14.0, 30.0, 50.0, 10.0 + length - 2.0] {
+        assert!(at(x, 5.0) + 20 < open, "{x} m: {} of {open}", at(x, 5.0));
+    }
+    assert!(at(10.0 + length + 2.0, 5.0).abs_diff(open) < 6, "{} of {open}", at(10.0 + length + 2.0, 5.0));
+}
+
 #[test]
 fn ground_of_a_transparent_picture_fades_away() {
     let scene = town("");
