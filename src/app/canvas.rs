@@ -12,7 +12,6 @@ use crate::{
     app::{
         canvas_state::{Canvas, Drag, Hovered},
         gizmo,
-        landing::EYE_HEIGHT_M,
         render_thread::Frame,
         spots::in_rect,
         state::Window,
@@ -20,11 +19,12 @@ use crate::{
     figure::{overlays::views::POINT_RADIUS_M, scene_file::node::Data},
     geom::Aabb,
     render::picture::ShownOverlay,
-    scene::{Command, PoiPlace},
+    scene::{Command, PoiPlace, above_ground},
     view::{
         Camera, View, default_near_m,
         navigate::{self, Flight},
     },
+    visibility::EYE_HEIGHT_M,
 };
 
 /// Radians that a drag over a point of the window turns.
@@ -155,10 +155,10 @@ impl Window {
         if self.city.is_none() {
             return;
         }
-        let before = self.document.scene().camera;
+        let before = self.camera();
         self.canvas.home = self.canvas.home.or(before);
         self.move_eye(ui, &response, rect);
-        if self.document.scene().camera != before {
+        if self.camera() != before {
             self.canvas.moved_at = Some(Instant::now());
         }
         self.look_up(&response, rect);
@@ -334,7 +334,7 @@ impl Window {
     fn fly_on(&mut self) {
         let Some((flight, started)) = self.canvas.flight else { return };
         let t = started.elapsed().as_secs_f64() / flight.duration_s().max(1e-3);
-        self.document.look(flight.at(t.min(1.0)));
+        self.put_eye(flight.at(t.min(1.0)));
         if t >= 1.0 {
             self.canvas.flight = None;
             self.canvas.moved_at = Some(Instant::now());
@@ -495,7 +495,9 @@ impl Window {
             Some(PoiPlace::Object(id)) => self.city.as_ref().map_or(Aabb::EMPTY, |city| {
                 city.model.find_object(&id).map_or(Aabb::EMPTY, |object| city.model.family_bounds(object))
             }),
-            Some(PoiPlace::At(at)) => Aabb { min: at - POINT_RADIUS_M, max: at + POINT_RADIUS_M },
+            Some(PoiPlace::At(at)) => Aabb::around(at, DVec3::splat(POINT_RADIUS_M)),
+            Some(PoiPlace::AboveGround(at)) => above_ground::above(at, &self.ground())
+                .map_or(Aabb::EMPTY, |at| Aabb::around(at, DVec3::splat(POINT_RADIUS_M))),
             _ => Aabb::EMPTY,
         }
     }

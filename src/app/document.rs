@@ -86,6 +86,7 @@ impl Document {
         let Scene {
             city,
             camera: _,
+            camera_above_ground,
             sun,
             time_s,
             style,
@@ -99,7 +100,8 @@ impl Document {
         } = self.scene();
         let saved = &self.saved;
         let is_set_alike = (city, sun, time_s, style, layout, figure, animation)
-            == (&saved.city, &saved.sun, &saved.time_s, &saved.style, &saved.layout, &saved.figure, &saved.animation);
+            == (&saved.city, &saved.sun, &saved.time_s, &saved.style, &saved.layout, &saved.figure, &saved.animation)
+            && *camera_above_ground == saved.camera_above_ground;
         let has_alike = (trajectories, pois, lenses, overlays)
             == (&saved.trajectories, &saved.pois, &saved.lenses, &saved.overlays);
         !(is_set_alike && has_alike)

@@ -2,6 +2,8 @@
 
 pub mod places;
 
+use std::borrow::Cow;
+
 use eframe::egui::{Align2, Color32, CursorIcon, Painter, Pos2, Rect, Shape, Stroke, Ui, Vec2, vec2};
 use glam::{DVec2, DVec3};
 
@@ -16,7 +18,7 @@ use crate::{
     },
     geom::Aabb,
     lens::{Lens, Placement, Region},
-    scene::anchor::anchor,
+    scene::{above_ground, anchor::anchor},
     view::View,
 };
 
@@ -36,11 +38,20 @@ const NEAR: f32 = 60.0;
 impl Window {
     /// The origin of a lens' coordinates; `None`: it is fixed to the eye, or to what the city does not have.
     fn origin_of(&self, lens: &Lens) -> Option<DVec3> {
-        if lens.placement == Placement::World {
+        if matches!(lens.placement, Placement::World | Placement::AboveGround) {
             return Some(DVec3::ZERO);
         }
         let city = self.city.as_ref()?;
         anchor(&lens.placement, self.document.scene(), &city.model).ok().flatten()
+    }
+
+    /// A shape of a lens in coordinates of its origin: as it is, or with its heights above the ground as those of the model.
+    fn standing<'r>(&self, lens: &Lens, region: &'r Region) -> Cow<'r, Region> {
+        let mut raised = Cow::Borrowed(region);
+        if lens.placement == Placement::AboveGround && above_ground::raise(raised.to_mut(), &self.ground()).is_err() {
+            return Cow::Borrowed(region);
+        }
+        raised
     }
 
     /// The height of the ground at a place in plan, both counted from an origin.
@@ -57,6 +68,7 @@ impl Window {
         let mut shown: Vec<Gizmo> = Vec::new();
         for (shape, region) in lens.shapes.iter().enumerate().filter_map(|(i, own)| Some((i, own.own_shape()?))) {
             let gizmo = |kind, place, at| Gizmo { lens: index, shape, kind, place, at };
+            let region = &*self.standing(lens, region);
             let Some(middle) = places::middle(region, &ground).map(|middle| middle + origin) else { continue };
             let Some(middle_at) = spot_of(view, rect, middle) else { continue };
             let disc = gizmo(GizmoKind::Middle, middle, middle_at);
@@ -104,7 +116,7 @@ impl Window {
     /// Begins to drag a gizmo that was pressed there.
     pub(super) fn grip(&self, gizmo: Gizmo, pressed: Pos2) -> Option<Grip> {
         let lens = self.document.scene().lenses.get(gizmo.lens)?;
-        let before = lens.shapes.get(gizmo.shape)?.own_shape()?.clone();
+        let before = self.standing(lens, lens.shapes.get(gizmo.shape)?.own_shape()?).into_owned();
         let middle = places::middle(&before, &|_| None)? + self.origin_of(lens)?;
         // What is turned is so about where its middle is on the ground.
         let middle = middle.with_z(gizmo.place.z);
@@ -120,7 +132,13 @@ impl Window {
         let verb = match kind {
             GizmoKind::Middle => {
                 let Some(to) = dragged_to(view, rect, now, place, shift) else { return };
-                places::move_by(&mut after, to - place);
+                let mut by = to - place;
+                if let (Placement::AboveGround, false) = (&lens.placement, shift) {
+                    // Along the ground, up and down with it.
+                    let ground = self.ground();
+                    by.z += ground(to.truncate()).zip(ground(place.truncate())).map_or(0.0, |(to, from)| to - from);
+                }
+                places::move_by(&mut after, by);
                 "move"
             }
             GizmoKind::Ring => {
@@ -155,6 +173,9 @@ impl Window {
                 "turn"
             }
         };
+        if lens.placement == Placement::AboveGround && above_ground::lower(&mut after, &self.ground()).is_err() {
+            return;
+        }
         let name = format!("{verb} {}", lens.name);
         let mut scene = self.document.scene().clone();
         let own = scene.lenses.get_mut(index).and_then(|lens| lens.shapes.get_mut(shape));
@@ -170,7 +191,8 @@ impl Window {
         let Some((lens, origin)) = lens.and_then(|lens| Some((lens, self.origin_of(lens)?))) else {
             return Aabb::EMPTY;
         };
-        let all = lens.shapes.iter().filter_map(Region::own_shape).map(places::extent);
+        let shapes = lens.shapes.iter().filter_map(Region::own_shape);
+        let all = shapes.map(|shape| places::extent(&self.standing(lens, shape)));
         let all = all.fold(Aabb::EMPTY, Aabb::union);
         if all.is_empty() { all } else { Aabb { min: all.min + origin, max: all.max + origin } }
     }
@@ -178,7 +200,8 @@ impl Window {
     fn draw_wires(&self, painter: &Painter, lens: &Lens, view: &View, rect: Rect, color: Color32) {
         let Some(origin) = self.origin_of(lens) else { return };
         let ground = self.ground_from(origin);
-        for wire in lens.shapes.iter().filter_map(Region::own_shape).flat_map(|region| places::wires(region, &ground)) {
+        let shapes = lens.shapes.iter().filter_map(Region::own_shape);
+        for wire in shapes.flat_map(|region| places::wires(&self.standing(lens, region), &ground)) {
             for ends in wire.windows(2) {
                 if let (Some(a), Some(b)) =
                     (spot_of(view, rect, ends[0] + origin), spot_of(view, rect, ends[1] + origin))

@@ -7,12 +7,12 @@ use glam::{DVec2, DVec3};
 use crate::{
     app::state::Window,
     city::place::Places,
-    geom::Ray,
-    view::{Camera, Projection, navigate},
+    geom::Aabb,
+    scene::above_ground,
+    view::{Camera, Field, Projection, navigate},
+    visibility::{Before, ENOUGH, EYE_HEIGHT_M, Standing, Subject},
 };
 
-/// The height of eyes, metres.
-pub const EYE_HEIGHT_M: f64 = 1.7;
 /// An eye higher than this above the ground comes down where it looks, else where it is, metres.
 const LOW_M: f64 = 10.0;
 /// The free distance around a place to stand, metres.
@@ -22,35 +22,50 @@ const ROOM_M: f64 = 1.0;
 const REACH_M: f64 = 100.0;
 const APART_M: f64 = 2.0;
 const APART_SHARE: f64 = 0.1;
-/// The distance from an object to look at it from: so many of its heights, at least and at most so many metres.
-const HEIGHTS_AWAY: f64 = 1.5;
-const AWAY_M: (f64, f64) = (20.0, 80.0);
 
 impl Window {
-    /// The camera after coming down to the ground: before the chosen object, on the side of the eye, looking at it; without
-    /// one where the eye looks; an eye that is low already where it is. It never lands in a building where there is room
-    /// beside it.
+    /// The camera after coming down to the ground: before the chosen object with all of it in the picture, where a third of its facades is
+    /// seen or as much as can be ([`Before`]), on the side of the eye if that will do; a low eye that sees so much of it only turns to it.
+    /// Without an object it is where the eye looks, and a low eye stays where it is. It never lands in a building where there is room beside it.
     pub(super) fn landing(&self, camera: &Camera) -> Camera {
-        let Some(city) = &self.city else { return *camera };
         let here = camera.eye.truncate();
         let is_low = self.ground_at(here).is_none_or(|ground| camera.eye.z - ground < LOW_M);
-        let chosen = self.chosen.object.filter(|object| !self.is_ground(*object));
-        let bounds = chosen.map(|object| city.model.family_bounds(object));
-        let (wanted, at) = match bounds.filter(|bounds| !bounds.is_empty()) {
-            _ if is_low => (here, None),
-            Some(bounds) => {
-                let (center, size) = (bounds.center(), bounds.size());
-                let away = 0.5 * size.truncate().length() + (HEIGHTS_AWAY * size.z).clamp(AWAY_M.0, AWAY_M.1);
-                let side = (here - center.truncate()).try_normalize().unwrap_or(DVec2::NEG_Y);
-                (center.truncate() + away * side, Some(center))
-            }
-            None => (self.canvas.middle(self.frame.as_deref()).unwrap_or(camera.target).truncate(), None),
+        if let Some(standing) = self.before_chosen(camera, is_low) {
+            return navigate::landed(camera, standing.eye, Some(standing.target));
+        }
+        let chosen = self.chosen_bounds().filter(|_| !is_low).map(|bounds| bounds.center());
+        let seen = || self.canvas.middle(self.frame.as_deref()).unwrap_or(camera.target).truncate();
+        let wanted = match chosen {
+            _ if is_low => here,
+            Some(middle) => middle.truncate(),
+            None => seen(),
         };
-        let place = free_near(wanted, |place| self.is_free(place));
+        let place = free_near(wanted, |place| self.places().is_none_or(|places| places.is_free(place, ROOM_M)));
         match self.ground_at(place) {
-            Some(ground) => navigate::landed(camera, place.extend(ground + EYE_HEIGHT_M), at),
+            Some(ground) => navigate::landed(camera, place.extend(ground + EYE_HEIGHT_M), chosen),
             None => *camera,
         }
+    }
+
+    /// Where to stand before the chosen object, if one is chosen that can be looked at so.
+    fn before_chosen(&self, camera: &Camera, is_low: bool) -> Option<Standing> {
+        let (city, places) = (self.city.as_ref()?, self.places()?);
+        let object = self.chosen.object.filter(|object| !self.is_ground(*object))?;
+        let subject = Subject::new(&city.model, &city.geometries, places.index, object).ok()?;
+        let fov_y = match camera.projection {
+            Projection::Perspective { fov_y } => fov_y,
+            Projection::Orthographic { .. } => self.fov_y,
+        };
+        let before = Before { subject: &subject, places, field: Field { fov_y, aspect: self.canvas.aspect() } };
+        let here = is_low.then(|| before.standing_at(camera.eye.truncate())).flatten();
+        here.filter(|standing| standing.seen >= ENOUGH).or_else(|| before.standing(camera.eye))
+    }
+
+    /// Around the chosen object, but for ground, metres.
+    fn chosen_bounds(&self) -> Option<Aabb> {
+        let object = self.chosen.object.filter(|object| !self.is_ground(*object))?;
+        let bounds = self.city.as_ref()?.model.family_bounds(object);
+        (!bounds.is_empty()).then_some(bounds)
     }
 
     /// The height of the ground at a place in plan, metres: of terrain, roads and the like, else of the plain ground, else of the lowest
@@ -74,29 +89,28 @@ impl Window {
             }
             _ => to,
         };
-        self.document.look(kept);
+        self.put_eye(kept);
+    }
+
+    /// Puts the eye somewhere, model coordinates; the scene goes on giving it above the ground where it does.
+    pub(super) fn put_eye(&mut self, camera: Camera) {
+        let own = match self.document.scene().camera_above_ground {
+            true => above_ground::lowered(&camera, &self.ground()),
+            false => Ok(camera),
+        };
+        if let Ok(own) = own {
+            self.document.look(own);
+        }
+    }
+
+    /// The height of the ground at places in plan, metres, where there is ground that is known.
+    pub(super) fn ground(&self) -> impl Fn(DVec2) -> Option<f64> {
+        |at| self.places()?.ground(at)
     }
 
     fn is_ground(&self, object: u32) -> bool {
         let objects = self.city.as_ref().map(|city| &city.model.objects);
         objects.and_then(|objects| objects.get(object as usize)).is_some_and(|own| own.class.is_ground())
-    }
-
-    /// Whether nothing but ground is at a place and a metre around it, whatever the height.
-    fn is_free(&self, place: DVec2) -> bool {
-        let Some((city, index)) = self.city.as_ref().and_then(|city| Some((city, city.index.get()?))) else {
-            return true;
-        };
-        let is_open = |at: DVec2| {
-            let ray = Ray { origin: at.extend(city.extent.max.z + 1.0), direction: DVec3::NEG_Z };
-            let mut is_open = true;
-            index.hits_until(&city.model, &ray, f64::INFINITY, |hit| {
-                is_open = self.is_ground(hit.object);
-                !is_open
-            });
-            is_open
-        };
-        is_open(place) && (0..8).all(|i| is_open(place + ROOM_M * DVec2::from_angle(TAU * f64::from(i) / 8.0)))
     }
 }
 

@@ -96,7 +96,7 @@ impl NewLens {
                 format!("kind = \"deformation\", deform = [{{ kind = \"lower\", poi = {poi}, factor = 0.15 }}]")
             }
             Self::BestView => format!("kind = \"best-view\", poi = {poi}"),
-            Self::Annotation => format!("kind = \"annotation\", poi = {poi}, text = {poi}"),
+            Self::Annotation => format!("kind = \"annotation\", poi = {poi}, text = \"{{name}}\""),
             Self::Map => "kind = \"map-view\"".to_owned(),
         };
         draft.set(&format!("lens.{index}={{ name = {}, {what} }}", quoted(&name)))?;

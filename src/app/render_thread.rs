@@ -120,6 +120,8 @@ pub struct Opened {
     pub types: Vec<(String, usize)>,
     /// Levels of detail that there are, the coarsest first.
     pub levels: Vec<String>,
+    /// The geometries that are shown, by index.
+    pub geometries: Vec<u32>,
     /// Finds what is shown along a ray, once that is known: after the first picture.
     pub index: Arc<OnceLock<SpatialIndex>>,
     /// The plain ground under it.
@@ -520,6 +522,7 @@ impl Worker {
             attributes: attribute_names(&model).into_iter().map(str::to_owned).collect(),
             types: types_of(&model),
             levels: levels_of(&model),
+            geometries: studio.geometries.clone(),
             index: studio.index().clone(),
             ground: studio.ground.clone(),
             extent: studio.extent(),
@@ -582,6 +585,7 @@ impl Worker {
             self.standing = (Standing::default(), size);
         }
         let drawn = self.with_studio(|studio, standing| {
+            let scene = studio.on_ground(&scene)?;
             let picture = figure::draw_next(studio, &scene, &request, standing)?;
             let view = View::new(studio.camera(&scene, size), size, &Aabb::EMPTY)?;
             Ok((picture, view))

@@ -27,7 +27,7 @@ use crate::{
     },
     city::load::LoadOptions,
     figure::scene_file::{self, Options},
-    scene::{CitySpec, Scene, check_against},
+    scene::{CitySpec, Scene, above_ground, check_against},
     view::Camera,
 };
 
@@ -487,9 +487,14 @@ impl Window {
         }
     }
 
-    /// Where the eye is.
+    /// Where the eye is, in model coordinates; `None`: nobody knows yet, as long as it is given above ground that is not known.
     pub fn camera(&self) -> Option<Camera> {
-        self.document.scene().camera
+        let scene = self.document.scene();
+        let camera = scene.camera?;
+        match scene.camera_above_ground {
+            true => above_ground::raised(&camera, &self.ground()).ok(),
+            false => Some(camera),
+        }
     }
 
     fn menu(&mut self, ui: &mut Ui) {

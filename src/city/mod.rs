@@ -13,6 +13,7 @@ pub mod gltf;
 pub mod ground;
 pub mod json;
 pub mod kept_measures;
+pub mod label;
 pub mod load;
 pub mod measured;
 mod memory;

@@ -1,5 +1,7 @@
 //! What is at a place of a city: ground, what stands highest there, and whether an eye is in a building.
 
+use std::f64::consts::TAU;
+
 use glam::{DVec2, DVec3};
 
 use crate::{
@@ -53,6 +55,12 @@ impl Places<'_> {
         self.highest(at, |object| !self.model.objects[object as usize].class.is_ground())
     }
 
+    /// Whether nothing but ground is at a place in plan and so far around it (metres), whatever the height.
+    pub fn is_free(&self, at: DVec2, room_m: f64) -> bool {
+        let is_open = |at: DVec2| self.top(at).is_none();
+        is_open(at) && (0..8).all(|i| is_open(at + room_m * DVec2::from_angle(TAU * f64::from(i) / 8.0)))
+    }
+
     fn highest(&self, at: DVec2, accept: impl Fn(u32) -> bool) -> Option<Top> {
         let above = ABOVE_ALL_M;
         let ray = Ray { origin: at.extend(above), direction: DVec3::NEG_Z };
@@ -69,6 +77,12 @@ impl Places<'_> {
             }
         });
         first
+    }
+
+    /// Whether what a ray meets first is something that stands on the ground.
+    pub fn shows_building(&self, ray: &Ray) -> bool {
+        let first = self.first(ray, |_| true);
+        first.is_some_and(|hit| !self.model.objects[hit.object as usize].class.is_ground())
     }
 
     /// The building (its root) that an eye is in: its roof is above, and its walls are on three sides at least.

@@ -145,8 +145,9 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let progress = terminal::Progress::counting(count, "drawing", "frames", global);
     let (mut lines, mut is_warned, mut standing) = (Vec::new(), false, Standing::default());
     for frame in begin..=last {
-        let scene = film.scene(frame).map_err(failed)?;
+        let said = film.scene(frame).map_err(failed)?;
         let at_frame = |error: String| Failure::failed(format!("{}: frame {frame}: {error}", file.display()));
+        let scene = studio.on_ground(&said).map_err(|error| at_frame(error.to_string()))?;
         studio.pass(&scene, scene.figure.pixels(), 1.0 / film.fps()).map_err(|error| at_frame(error.to_string()))?;
         if frame < first {
             figure::pass(&studio, &scene, scene.figure.pixels(), &mut standing)
@@ -174,7 +175,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
             serde_json::to_writer(&mut lines, &line).map_err(|error| at_frame(error.to_string()))?;
             lines.push(b'\n');
         }
-        let notes = picture::notes_of(&scene, &options);
+        let notes = picture::notes_of(&said, &options);
         picture::save_picture(&folder.file(frame), drawn.size, &drawn.rgba, true, &notes).map_err(output::unwritten)?;
         progress.at(u64::from(frame - first) + 1);
     }

@@ -92,6 +92,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     }
     let (studio, _) = render::open(&scene, &options, &[], global)?;
     let scene = render::with_camera(scene, &of_camera, &studio)?;
+    let scene = studio.on_ground(&scene).map_err(Failure::failed)?;
     let text = studio
         .shader(&scene, scene.figure.pixels(), arguments.shaders.into(), arguments.module.into())
         .map_err(Failure::failed)?;

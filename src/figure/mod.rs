@@ -43,6 +43,7 @@ pub fn draw_next(
     request: &Request,
     standing: &mut Standing,
 ) -> Result<Picture, RenderError> {
+    let scene = &*studio.on_ground(scene)?;
     let own = furniture_of(studio, scene, request.size)?;
     draw_with(studio, scene, request, standing, own)
 }
@@ -52,6 +53,7 @@ pub fn draw_next(
 /// # Errors
 /// What an overlay shows and is not there.
 pub fn pass(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Standing) -> Result<(), RenderError> {
+    let scene = &*studio.on_ground(scene)?;
     let own = furniture_of(studio, scene, size)?;
     overlays::pass(studio, scene, size, &own.taken, standing)
 }
@@ -61,6 +63,7 @@ pub fn pass(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Stand
 /// # Errors
 /// As for [`draw`].
 pub fn draw_untitled(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
+    let scene = &*studio.on_ground(scene)?;
     draw_with(studio, scene, request, &mut Standing::default(), Laid::default())
 }
 
@@ -78,6 +81,7 @@ pub struct Apart {
 /// # Errors
 /// As for [`draw`].
 pub fn draw_apart(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Apart, RenderError> {
+    let scene = &*studio.on_ground(scene)?;
     let own = furniture_of(studio, scene, request.size)?;
     let mut overlays = overlays::overlays(studio, scene, request, &own.taken, &mut Standing::default())?;
     let furniture = over(&mut overlays, own);

@@ -46,6 +46,8 @@ pub enum LocalView {
         normal: Option<DVec3>,
         /// Vertical field of view, radians.
         fov_y: f64,
+        /// Whether what is beside its object is pale.
+        highlight: bool,
     },
     /// The main eye, looked at from outside (multiple centres of projection).
     Mcop {
@@ -109,7 +111,12 @@ pub enum LocalView {
         fov_y: f64,
     },
     /// Any eye: a region of the picture that shows another place (Through-The-Lens).
-    Camera(Camera),
+    Camera {
+        /// The eye.
+        camera: Camera,
+        /// Whether its heights are metres above the ground (`Scene::on_ground`).
+        above_ground: bool,
+    },
 }
 
 impl LocalView {

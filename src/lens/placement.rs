@@ -6,6 +6,8 @@ pub enum Placement {
     /// The world: model coordinates.
     #[default]
     World,
+    /// The world, with heights that are metres above the ground at each place: `Scene::on_ground` makes it [`Self::World`].
+    AboveGround,
     /// A city object, by its id: the middle of the axis-aligned box around the geometries of all its levels of detail and those
     /// of all its parts; the world's axes.
     Object(String),

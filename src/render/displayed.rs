@@ -100,7 +100,7 @@ impl<'a> Stands<'a> {
     fn displayed(city: ShownCity<'a>, pois: &'a [Poi], moved: &Moved, last: &mut LastDisplayed) -> Self {
         let place = |poi: &Poi| match poi.place {
             PoiPlace::At(at) => Poi { place: PoiPlace::At(moved.place(None, at)), ..poi.clone() },
-            PoiPlace::Object(_) | PoiPlace::On(_) => poi.clone(),
+            PoiPlace::Object(_) | PoiPlace::AboveGround(_) | PoiPlace::On(_) => poi.clone(),
         };
         let displayed = last.of(city, moved).map(|displayed| (displayed, pois.iter().map(place).collect()));
         Self { at_rest: Stand { city, pois }, displayed }

@@ -349,6 +349,8 @@ impl Occlusion {
 fn poi_of(place: &PoiPlace, city: ShownCity) -> Option<visibility::Poi> {
     match place {
         PoiPlace::At(at) => Some(visibility::Poi::At(*at)),
+        // As what moves: [`crate::scene::Scene::on_ground`].
+        PoiPlace::AboveGround(_) => None,
         PoiPlace::Object(id) => city.model.find_object(id).map(visibility::Poi::Object),
         PoiPlace::On(_) => None,
     }

@@ -1,6 +1,7 @@
 //! A picture, its AOVs and its statistics, from a scene and a city: the shown surface written down.
 
 use std::{
+    borrow::Cow,
     collections::{BTreeMap, BTreeSet},
     sync::{
         Arc, Mutex, MutexGuard, OnceLock, PoisonError,
@@ -278,6 +279,17 @@ impl Studio {
     /// What is at places of it.
     pub fn places(&self) -> Places<'_> {
         Places { model: &self.model, index: self.shown().index(), ground: self.ground.as_deref() }
+    }
+
+    /// A scene of which heights are the model's: those that it gives above the ground are found here. What draws, counts and picks takes such
+    /// scenes; [`crate::figure`] asks for them itself.
+    ///
+    /// # Errors
+    /// Where there is no ground.
+    pub fn on_ground<'s>(&self, scene: &'s Scene) -> Result<Cow<'s, Scene>, RenderError> {
+        // The index takes a moment to make: only where it is asked.
+        let found = scene.on_ground(&|at| self.places().ground(at));
+        found.map_err(|problem| RenderError::Scene(problem.to_string()))
     }
 
     /// The building that the eye of a scene is in, where its camera is given.

@@ -20,6 +20,9 @@ pub enum AnchorProblem {
     /// The scene has no such point of interest.
     #[error("the scene has no point of interest \"{0}\"{1}")]
     NoPoi(String, String),
+    /// Its heights are above the ground: only [`Scene::on_ground`] knows where that is.
+    #[error("its height is above the ground, which is not known yet")]
+    NotOnGround,
     /// The scene has no such trajectory.
     #[error("the scene has no trajectory \"{0}\"")]
     NoTrajectory(String),
@@ -30,9 +33,12 @@ pub fn anchor(placement: &Placement, scene: &Scene, model: &CityModel) -> Result
     match placement {
         Placement::Camera => Ok(None),
         Placement::World => Ok(Some(DVec3::ZERO)),
+        // Where the ground is its shapes know, each for itself.
+        Placement::AboveGround => Err(AnchorProblem::NotOnGround),
         Placement::Object(id) => middle_of(id, model).map(Some),
         Placement::Poi(name) => match scene.pois.iter().find(|poi| poi.name == *name).map(|poi| scene.place(poi)) {
             Some(PoiPlace::At(at)) => Ok(Some(at)),
+            Some(PoiPlace::AboveGround(_)) => Err(AnchorProblem::NotOnGround),
             Some(PoiPlace::Object(id)) => middle_of(&id, model).map(Some),
             Some(PoiPlace::On(name)) => Err(AnchorProblem::NoTrajectory(name)),
             None => {

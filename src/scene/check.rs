@@ -75,8 +75,8 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
         let Err(problem) = anchor(&lens.placement, scene, model) else { continue };
         let key = match (&lens.placement, &problem) {
             (Placement::Object(_), _) => "attached_to.object",
-            // It is told of the point of interest.
-            (_, AnchorProblem::NoObject(..)) => continue,
+            // It is told of the point of interest; the ground is known later.
+            (_, AnchorProblem::NoObject(..) | AnchorProblem::NotOnGround) => continue,
             _ => "attached_to.poi",
         };
         problems.push(SceneProblem {
@@ -150,7 +150,7 @@ fn check_occluders(of: &Occluders, table: &str, scene: &Scene, model: &CityModel
         let placement = Placement::Poi(name.clone());
         match anchor(&placement, scene, model) {
             // It is told of the point of interest.
-            Ok(_) | Err(AnchorProblem::NoObject(..)) => {}
+            Ok(_) | Err(AnchorProblem::NoObject(..) | AnchorProblem::NotOnGround) => {}
             Err(wrong) => {
                 let key = if of.pois.len() == 1 { "poi".to_owned() } else { format!("poi.{i}") };
                 let why = match wrong {

@@ -77,11 +77,13 @@ impl Command {
     /// at `index`.
     pub fn step_through(scene: &Scene, index: usize, from: Camera) -> Option<Self> {
         let lens = scene.lenses.get(index).filter(|lens| lens.kind.row().is_door)?;
-        let Some(&LocalView::Camera(to)) = lens.best_view().and_then(BestView::view) else { return None };
+        let Some(&LocalView::Camera { camera: to, above_ground }) = lens.best_view().and_then(BestView::view) else {
+            return None;
+        };
         Some(Self::of(format!("step through {}", lens.name), scene, |s| {
-            s.camera = Some(to);
+            (s.camera, s.camera_above_ground) = (Some(to), above_ground);
             if let Some(shown) = s.lenses[index].kind.best_view_mut() {
-                shown.depiction = Depiction::View(LocalView::Camera(from));
+                shown.depiction = Depiction::View(LocalView::Camera { camera: from, above_ground: false });
             }
         }))
     }
@@ -208,7 +210,7 @@ mod tests {
         let [here, there] = [0.0, 500.0].map(|x| Camera::looking(DVec3::new(x, 0.0, 9.0), DVec3::ZERO + DVec3::Y, 0.8));
         let shown = BestView {
             pois: Vec::new(),
-            depiction: Depiction::View(LocalView::Camera(there)),
+            depiction: Depiction::View(LocalView::Camera { camera: there, above_ground: false }),
             lenses: None,
             look: None,
         };

@@ -97,7 +97,7 @@ impl Scene {
         let ids: Vec<String> = shown
             .filter_map(|poi| match &poi.place {
                 PoiPlace::Object(id) => Some(id.clone()),
-                PoiPlace::At(_) | PoiPlace::On(_) => None,
+                PoiPlace::At(_) | PoiPlace::AboveGround(_) | PoiPlace::On(_) => None,
             })
             .collect();
         if !render.poi_effects.is_empty() && !ids.is_empty() {

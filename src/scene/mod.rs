@@ -2,6 +2,7 @@
 //!
 //! Everything is in model coordinates, metres and radians; edits are commands.
 
+pub mod above_ground;
 pub mod anchor;
 pub mod animation;
 pub mod check;

@@ -27,6 +27,8 @@ pub struct Scene {
     pub city: CitySpec,
     /// The eye; `None`: a good first view is chosen.
     pub camera: Option<Camera>,
+    /// Whether heights of the camera, and of its path in an animation, are metres above the ground ([`Scene::on_ground`]).
+    pub camera_above_ground: bool,
     /// Light.
     pub sun: Sun,
     /// The moment that is shown, seconds: where what moves is.
@@ -150,6 +152,8 @@ pub enum PoiPlace {
     Object(String),
     /// A point, metres.
     At(DVec3),
+    /// A point so many metres above the ground, which [`Scene::on_ground`] makes one of the model.
+    AboveGround(DVec3),
     /// What moves along the trajectory of this name: [`Scene::place`] says where it is.
     On(String),
 }

@@ -7,7 +7,7 @@ use crate::{
     scene::{check::SceneProblem, model::Scene},
 };
 
-/// The overlay of a best-view lens. Lengths are pixels of the picture.
+/// The overlay of a best-view lens. Lengths are pixels of the picture; what is not given goes by its size ([`scale_of`]).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Overlay {
     /// The name of its lens.
@@ -18,8 +18,11 @@ pub struct Overlay {
     pub interest: f64,
     /// Where it stands.
     pub stand: Stand,
-    /// Preferred size.
-    pub size: [u32; 2],
+    /// Preferred size, pixels; `None`: by `share`.
+    pub size: Option<[u32; 2]>,
+    /// Preferred height as a share of that of a picture of 16 by 9 which just has room in this one, 0..=1, with [`Self::ASPECT`]; of one
+    /// without a size.
+    pub share: f64,
     /// It is made no smaller; `None`: half its preferred size.
     pub min: Option<[u32; 2]>,
     /// It is made no larger; `None`: its preferred size and a half.
@@ -121,8 +124,8 @@ pub struct ContextLine {
     pub kind: LineKind,
     /// sRGB 0..1; `None`: the lens colour.
     pub color: Option<[f32; 3]>,
-    /// Its widths at the overlay and at the place.
-    pub widths: [f64; 2],
+    /// Its widths at the overlay and at the place; `None`: [`Self::WIDTHS`] of a picture of 1280 by 720 pixels, as much of others.
+    pub widths: [Option<f64>; 2],
     /// An image along it, with alpha: its left end at the overlay.
     pub skin: Option<PathBuf>,
     /// What it ends at.
@@ -183,12 +186,32 @@ impl Outside {
     pub const WORDS: [(&str, Self); 2] = [("arrow", Self::Arrow), ("hidden", Self::Hidden)];
 }
 
+/// Width and height of the picture that lengths in pixels are said of where the program chooses them.
+const WIDTH_PX: f64 = 1280.0;
+const HEIGHT_PX: f64 = 720.0;
+
+/// How many times as large as in a picture of 1280 by 720 pixels something is in another one that has the same share of it, by its narrower side.
+pub fn scale_of(picture: [u32; 2]) -> f64 {
+    let [w, h] = picture.map(f64::from);
+    (w / WIDTH_PX).min(h / HEIGHT_PX)
+}
+
+impl ContextLine {
+    /// Widths at the overlay and at the place, pixels of a picture of 1280 by 720.
+    pub const WIDTHS: [f64; 2] = [6.0, 1.5];
+
+    /// Its widths at the overlay and at the place in a picture, pixels.
+    pub fn widths_in(&self, picture: [u32; 2]) -> [f64; 2] {
+        [0, 1].map(|end| self.widths[end].unwrap_or(Self::WIDTHS[end] * scale_of(picture)))
+    }
+}
+
 impl Default for ContextLine {
     fn default() -> Self {
         Self {
             kind: LineKind::default(),
             color: None,
-            widths: [6.0, 1.5],
+            widths: [None; 2],
             skin: None,
             to: LineEnd::default(),
             outside: Outside::default(),
@@ -235,10 +258,10 @@ pub fn problems(scene: &Scene) -> Vec<SceneProblem> {
             Some(_) => {}
         }
         let is_over = |a: [u32; 2], b: [u32; 2]| a[0] > b[0] || a[1] > b[1];
-        if overlay.min.is_some_and(|min| is_over(min, overlay.size)) {
+        if overlay.min.zip(overlay.size).is_some_and(|(min, size)| is_over(min, size)) {
             note(table.clone(), "min", "is larger than size".to_owned());
         }
-        if overlay.max.is_some_and(|max| is_over(overlay.size, max)) {
+        if overlay.max.zip(overlay.size).is_some_and(|(max, size)| is_over(size, max)) {
             note(table.clone(), "max", "is smaller than size".to_owned());
         }
         if let Some([inner, outer]) = overlay.line.as_ref().and_then(|line| line.fade)
@@ -301,8 +324,18 @@ fn too_deep(scene: &Scene, chain: &mut Vec<usize>) -> Option<Vec<usize>> {
 }
 
 impl Overlay {
-    /// Preferred size where none is given, pixels.
-    pub const SIZE: [u32; 2] = [240, 160];
+    /// Preferred height where nothing is said: 160 pixels of 720.
+    pub const SHARE: f64 = 2.0 / 9.0;
+    /// Width over height where only a share is said.
+    pub const ASPECT: f64 = 1.5;
+
+    /// Preferred size in a picture, pixels, at least 1.
+    pub fn size_in(&self, picture: [u32; 2]) -> [u32; 2] {
+        self.size.unwrap_or_else(|| {
+            let height = self.share * HEIGHT_PX * scale_of(picture);
+            [Self::ASPECT * height, height].map(|side| (side.round() as u32).max(1))
+        })
+    }
 
     /// The overlay of a lens that says nothing of it.
     pub fn of(lens: &str) -> Self {
@@ -311,7 +344,8 @@ impl Overlay {
             priority: 0.0,
             interest: 0.5,
             stand: Stand::default(),
-            size: Self::SIZE,
+            size: None,
+            share: Self::SHARE,
             min: None,
             max: None,
             opacity: 1.0,
@@ -331,10 +365,27 @@ pub struct Layout {
     pub sizes: Sizes,
     /// Whether the overlay nearest to the middle of the picture is in the middle of its row.
     pub exploration_focus: bool,
-    /// Between overlays and the border of the picture, pixels.
-    pub margin_px: f64,
-    /// Between overlays, pixels.
-    pub gap_px: f64,
+    /// Between overlays and the border of the picture, pixels; `None`: [`Self::MARGIN`] of a picture of 1280 by 720, as much of others.
+    pub margin_px: Option<f64>,
+    /// Between overlays, pixels; `None`: [`Self::GAP`], likewise.
+    pub gap_px: Option<f64>,
+}
+
+impl Layout {
+    /// To the border of a picture of 1280 by 720, pixels.
+    pub const MARGIN: f64 = 16.0;
+    /// Between overlays of such a picture, pixels.
+    pub const GAP: f64 = 12.0;
+
+    /// The margin in a picture, whole pixels.
+    pub fn margin_in(&self, picture: [u32; 2]) -> u32 {
+        self.margin_px.unwrap_or(Self::MARGIN * scale_of(picture)).round() as u32
+    }
+
+    /// The gap in a picture, whole pixels.
+    pub fn gap_in(&self, picture: [u32; 2]) -> u32 {
+        self.gap_px.unwrap_or(Self::GAP * scale_of(picture)).round() as u32
+    }
 }
 
 impl Default for Layout {
@@ -343,8 +394,8 @@ impl Default for Layout {
             along: Along::default(),
             sizes: Sizes::default(),
             exploration_focus: false,
-            margin_px: 16.0,
-            gap_px: 12.0,
+            margin_px: None,
+            gap_px: None,
         }
     }
 }
@@ -395,4 +446,29 @@ impl Sizes {
     /// All, with their words in scene files.
     pub const WORDS: [(&str, Self); 3] =
         [("preferred", Self::Preferred), ("distance", Self::Distance), ("interest", Self::Interest)];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_given_has_the_same_share_of_every_picture() {
+        let plain = Overlay::of("a");
+        for (picture, size, margin) in [
+            ([1280, 720], [240, 160], 16),
+            ([4096, 2160], [720, 480], 48),
+            ([320, 200], [60, 40], 4),
+            ([720, 1280], [135, 90], 9),
+        ] {
+            assert_eq!((plain.size_in(picture), Layout::default().margin_in(picture)), (size, margin), "{picture:?}");
+        }
+        let half = Overlay { share: 0.5, ..Overlay::of("a") };
+        assert_eq!(half.size_in([1280, 720]), [540, 360]);
+        let pixels = Overlay { size: Some([300, 90]), ..half };
+        assert_eq!(pixels.size_in([4096, 2160]), [300, 90], "pixels stay pixels");
+        let line = ContextLine { widths: [None, Some(2.0)], ..ContextLine::default() };
+        assert_eq!(line.widths_in([2560, 1440]), [12.0, 2.0]);
+        assert_eq!(plain.size_in([1, 1]), [1, 1]);
+    }
 }

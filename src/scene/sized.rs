@@ -20,14 +20,11 @@ impl Scene {
     #[must_use]
     pub fn sized(&self, factor: f64, em_px: f64) -> Self {
         let mut scene = self.clone();
-        for lens in self.lenses.iter().filter(|lens| lens.kind.has_overlay()) {
-            if !scene.overlays.iter().any(|overlay| overlay.lens == lens.name) {
-                scene.overlays.push(Overlay::of(&lens.name));
-            }
-        }
         scene.overlays.iter_mut().for_each(|overlay| size_overlay(overlay, factor));
-        scene.layout.margin_px *= factor;
-        scene.layout.gap_px *= factor;
+        // What is not given goes by the picture as it is.
+        for length in [&mut scene.layout.margin_px, &mut scene.layout.gap_px] {
+            *length = length.map(|length| length * factor);
+        }
         scene.figure.text = Some(TextSize::Pixels(em_px * factor));
         scene.style.chord_px *= factor;
         scene.style = scene.style.drawn();
@@ -38,12 +35,12 @@ impl Scene {
 }
 
 fn size_overlay(overlay: &mut Overlay, factor: f64) {
-    let sizes = [Some(&mut overlay.size), overlay.min.as_mut(), overlay.max.as_mut()];
+    let sizes = [overlay.size.as_mut(), overlay.min.as_mut(), overlay.max.as_mut()];
     for side in sizes.into_iter().flatten().flatten() {
         *side = ((f64::from(*side) * factor).round() as u32).max(1);
     }
     if let Some(ContextLine { widths, fade, .. }) = &mut overlay.line {
-        *widths = widths.map(|width| width * factor);
+        *widths = widths.map(|width| width.map(|width| width * factor));
         *fade = fade.map(|radii| radii.map(|radius| radius * factor));
     }
 }
@@ -107,10 +104,13 @@ mod tests {
             find("wireframe").unwrap().parameters.iter().find(|own| PIXELS.contains(&&*own.unit)).unwrap().name.clone();
         lines.effects = vec![used("wireframe", &[]), used("wireframe", &[(&width, 2.0)]), used("sepia", &[])];
         scene.lenses = vec![view, lines];
+        let line = ContextLine { widths: [Some(6.0), None], ..ContextLine::default() };
+        scene.overlays = vec![Overlay { size: Some([240, 160]), line: Some(line), ..Overlay::of("view") }];
+        scene.layout.margin_px = Some(16.0);
         let half = scene.sized(0.5, 14.0);
-        assert_eq!(half.overlays[0].size, Overlay::SIZE.map(|side| side / 2));
-        assert_eq!(half.overlays[0].line.as_ref().unwrap().widths, [3.0, 0.75]);
-        assert_eq!(half.layout.margin_px, 0.5 * scene.layout.margin_px);
+        assert_eq!(half.overlays[0].size, Some([120, 80]));
+        assert_eq!(half.overlays[0].line.as_ref().unwrap().widths, [Some(3.0), None]);
+        assert_eq!((half.layout.margin_px, half.layout.gap_px), (Some(8.0), None));
         assert_eq!(half.figure.text_px(), Some(7.0));
         let effects = &half.lenses[1].effects;
         let default = match find("wireframe")
@@ -129,7 +129,7 @@ mod tests {
         assert_eq!(effects[2], scene.lenses[1].effects[2], "what is not in pixels stays");
         // There and back; and at its own size nothing is another but for what was left to defaults.
         let back = half.sized(2.0, 7.0);
-        assert_eq!(back.overlays[0], Overlay::of("view"));
+        assert_eq!(back.overlays[0], scene.overlays[0]);
         assert_eq!(back.lenses[1].effects[1], scene.lenses[1].effects[1]);
     }
 }

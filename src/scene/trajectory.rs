@@ -22,6 +22,8 @@ pub struct Trajectory {
     pub pace: Pace,
     /// Whether it goes on from the last point to the first, round and round; and whether it has no corners.
     pub form: Form,
+    /// Whether its heights are metres above the ground, which it follows ([`Scene::on_ground`]).
+    pub above_ground: bool,
     /// When it sets out, seconds; before that it stands at its first point.
     pub start_s: f64,
     /// sRGB 0..1, of its marker and its trace.
@@ -81,6 +83,21 @@ impl Trajectory {
                 Pace::Speed(speed) => self.line().length() / speed,
                 Pace::Times(times) => times.last().copied().unwrap_or(0.0),
             }
+    }
+
+    /// When it has gone so many metres, seconds after it set out, between two of its times.
+    pub(super) fn gone_at(&self, metres: f64, [mut before, mut after]: [f64; 2]) -> f64 {
+        let Pace::Times(times) = &self.pace else { return before };
+        let line = self.line();
+        // Each step halves what is left: a second becomes less than a nanosecond.
+        for _ in 0..40 {
+            let middle = 0.5 * (before + after);
+            match self.by_times(times, line.marks(), middle) < metres {
+                true => before = middle,
+                false => after = middle,
+            }
+        }
+        0.5 * (before + after)
     }
 
     /// Metres gone after `since` seconds, more than the way where it goes round; it is at `marks` at `times`.
@@ -161,6 +178,7 @@ mod tests {
             points: points.iter().map(|p| DVec3::from_array(*p)).collect(),
             pace,
             form: Form { is_closed, is_smooth },
+            above_ground: false,
             start_s: 5.0,
             color: [0.0; 3],
             marker: true,

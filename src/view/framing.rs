@@ -7,7 +7,7 @@
 //!   n ←     │   ╰───╯   │       V's √(2·r²) is the D of α = 90°
 //! ```
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
     geom::Sphere,
@@ -78,6 +78,13 @@ pub struct Framing {
     pub far_m: f64,
 }
 
+/// The part of the picture that points fill at most.
+const FILLED: f64 = 0.94;
+/// The part of its depth by which a picture begins before the first point and ends behind the last one.
+const SPARE: f64 = 1e-3;
+/// The part of the radius of the ball by which an eye stays before the nearest point.
+const LEAST_BEFORE: f64 = 0.05;
+
 impl Framing {
     /// The camera in the direction `normal` (any length) of a ball. `viewer`: direction of view and up of the camera that the
     /// picture belongs to, if to any; asked for by views along the vertical alone.
@@ -102,6 +109,47 @@ impl Framing {
             fov_y: field.fov_y,
             near_m: distance - ball.radius,
             far_m: distance + ball.radius,
+        })
+    }
+
+    /// The camera in the direction `normal` (any length) of points, all of which just have room in the picture, in the middle of it: what is
+    /// long fills it where a ball around it would not. Its target is as deep as the middle of the ball around them.
+    pub fn of_points(
+        points: &[DVec3],
+        ball: &Sphere,
+        normal: DVec3,
+        field: &Field,
+        viewer: Option<[DVec3; 2]>,
+    ) -> Result<Self, FramingError> {
+        let of_ball = Self::new(ball, normal, field, viewer)?;
+        let forward = -of_ball.normal;
+        let right = forward.cross(of_ball.up).normalize_or(DVec3::X);
+        let up = right.cross(forward);
+        let tan = FILLED * (0.5 * field.fov_y).tan() * DVec2::new(field.aspect, 1.0);
+        // A point at (x, y) across and z along the view is in the picture of an eye at (a, b) and -d along it, if |x - a| ≤ tan·(z + d): the
+        // borders of all, right and left, top and bottom.
+        let (mut high, mut low) = (DVec2::NEG_INFINITY, DVec2::NEG_INFINITY);
+        let (mut near, mut far) = (f64::INFINITY, f64::NEG_INFINITY);
+        for point in points {
+            let from_middle = *point - ball.center;
+            let (across, along) = (DVec2::new(from_middle.dot(right), from_middle.dot(up)), from_middle.dot(forward));
+            (high, low) = (high.max(across - tan * along), low.max(-across - tan * along));
+            (near, far) = (near.min(along), far.max(along));
+        }
+        if !(high.is_finite() && low.is_finite()) {
+            return Ok(of_ball);
+        }
+        let aside = 0.5 * (high - low);
+        // An eye is never in what it looks at.
+        let distance = (0.5 * (high + low) / tan).max_element().max(LEAST_BEFORE * ball.radius - near);
+        let eye = ball.center + aside.x * right + aside.y * up - distance * forward;
+        let near_m = near + distance;
+        Ok(Self {
+            eye,
+            target: eye + distance * forward,
+            near_m: (1.0 - SPARE) * near_m,
+            far_m: (1.0 + SPARE) * (far + distance),
+            ..of_ball
         })
     }
 
@@ -170,6 +218,36 @@ mod tests {
             let depth = (BALL.center - framing.eye).dot(basis.forward);
             prop_assert!((depth - BALL.radius - framing.near_m).abs() < 1e-6);
             prop_assert!((depth + BALL.radius - framing.far_m).abs() < 1e-6);
+        }
+
+        #[test]
+        fn points_fill_the_picture_and_none_is_cut(
+            n in prop::array::uniform3(-1.0..1.0f64), fov in 10.0..100.0f64, width in 200..1500u32, height in 200..1500u32,
+            points in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 4..40), size in prop::array::uniform3(1.0..90.0f64)
+        ) {
+            let Some(normal) = DVec3::from(n).try_normalize() else { return Ok(()) };
+            let field = Field { fov_y: fov.to_radians(), aspect: f64::from(width) / f64::from(height) };
+            let points: Vec<DVec3> = points.into_iter().map(|p| BALL.center + DVec3::from(p) * DVec3::from(size)).collect();
+            let ball = Sphere::around(&points).unwrap();
+            let framing = Framing::of_points(&points, &ball, normal, &field, None).unwrap();
+            let camera = framing.camera();
+            let view = View::new(camera, [width, height], &Aabb::EMPTY).unwrap();
+            let sides = DVec2::new(f64::from(width), f64::from(height));
+            let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+            for point in &points {
+                let depth = view.depth(*point);
+                prop_assert!(depth > camera.near_m && depth < framing.far_m);
+                let at = view.pixel(*point).unwrap().truncate() / sides;
+                (low, high) = (low.min(at), high.max(at));
+            }
+            prop_assert!(low.min_element() > 0.0 && high.max_element() < 1.0, "{low} {high}");
+            // One side is filled, unless the eye would be in it; the other is in the middle.
+            let is_near = view.depth(ball.center) <= LEAST_BEFORE * ball.radius
+                - points.iter().map(|p| (*p - ball.center).dot(-framing.normal)).fold(f64::INFINITY, f64::min) + 1e-9;
+            prop_assert!(is_near || ((high - low).max_element() - FILLED).abs() < 1e-6, "{low} {high}");
+            // Never farther away than for the ball by more than the rim that is left.
+            let by_ball = Framing::new(&ball, normal, &field, None).unwrap();
+            prop_assert!(view.depth(ball.center) <= by_ball.eye.distance(ball.center) / FILLED + 1e-6);
         }
 
         #[test]

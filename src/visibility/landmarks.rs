@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::{
-    city::{CityModel, ObjectClass, StringId, Value, derived::footprints},
+    city::{CityModel, ObjectClass, StringId, Value, derived::footprints, label::NAMES},
     geom::{Aabb, bvh::Bvh},
     visibility::units::Units,
 };
@@ -32,9 +32,6 @@ const BLOCK_M: f64 = 100.0;
 /// The weights of the terms, in their order.
 const WEIGHTS: [f64; 4] = [0.4, 0.15, 0.25, 0.2];
 
-/// Attributes whose text is the name of one object, in lower case.
-const NAMES: [&str; 10] =
-    ["name", "gml:name", "gml_name", "naam", "nom", "nombre", "nome", "bezeichnung", "building:name", "title"];
 /// A name that more objects have is none.
 const NAMESAKES: usize = 3;
 /// Parts of the names of attributes that say what an object is for, in lower case.

@@ -4,7 +4,8 @@
 //! asks it of a whole city and says of each occluder which parts of the test held ([`Detected`]). [`Memory`] keeps classes from
 //! flickering over time, [`CaseMemory`] the ways in which they are drawn.
 //!
-//! And what is worth seeing: the best views of an object ([`best_views`]), and the objects that stand out ([`landmarks()`]).
+//! And what is worth seeing: the best views of an object ([`best_views`]), the objects that stand out ([`landmarks()`]), and where a person
+//! stands before one ([`Before`]).
 
 mod best_view;
 mod bounds;
@@ -14,6 +15,7 @@ mod detect;
 mod landmarks;
 mod memory;
 mod set;
+mod standing;
 mod test;
 mod units;
 
@@ -24,6 +26,7 @@ pub use detect::{Detected, Margin, Occluder, Query, Scope};
 pub use landmarks::{Landmark, Terms, landmarks};
 pub use memory::{Memory, Pace};
 pub use set::Set;
+pub use standing::{Before, ENOUGH, EYE_HEIGHT_M, Standing};
 pub use test::{Reference, Test};
 pub use units::{Poi, Units, Viewer};
 

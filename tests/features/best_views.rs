@@ -160,9 +160,11 @@ fn views_in_views_are_drawn_again_from_the_inside_outwards() {
     // What the inner one shows changes: both are drawn again.
     drawn(&mut studio, &scene);
     let mut moved = scene.clone();
-    moved.lenses[1].kind.best_view_mut().unwrap().depiction = veduta::lens::best_view::Depiction::View(
-        LocalView::Camera(Camera::looking(DVec3::new(60.0, 50.0, 30.0), DVec3::ZERO, 0.8)),
-    );
+    moved.lenses[1].kind.best_view_mut().unwrap().depiction =
+        veduta::lens::best_view::Depiction::View(LocalView::Camera {
+            camera: Camera::looking(DVec3::new(60.0, 50.0, 30.0), DVec3::ZERO, 0.8),
+            above_ground: false,
+        });
     assert_eq!(rendered(&drawn(&mut studio, &moved)), [true, true]);
 }
 

@@ -199,6 +199,7 @@ fn others_leave_boards_and_pinned_overlays_free() {
     for i in 0..8 {
         rest += &four(&format!("n{i}"), [8.0 * f64::from(i) - 20.0, 10.0, 3.0], "frame = \"none\"\nmin = [100, 66]");
     }
+    rest += "[layout]\ngap = 12.0\n";
     let scene = folder.scene(&rest);
     let picture = drawn(&mut of_scene(&scene), &scene);
     let all = told(&picture);
@@ -218,7 +219,9 @@ fn others_leave_boards_and_pinned_overlays_free() {
 #[test]
 fn a_pinned_overlay_stands_where_its_author_wants_it() {
     let folder = Folder::new("pinned");
-    let scene = |overlay: &str| folder.scene(&four("a", [8.0, 12.0, 4.0], &format!("frame = \"none\"\n{overlay}")));
+    let scene = |overlay: &str| {
+        folder.scene(&four("a", [8.0, 12.0, 4.0], &format!("frame = \"none\"\n{overlay}\n[layout]\nmargin = 16.0")))
+    };
     let mut studio = of_scene(&scene(""));
     for (size, at, expected) in [
         (SIZE, [0.5, 0.25], [260, 50, 380, 130]),
@@ -239,7 +242,8 @@ fn a_pinned_overlay_stands_where_its_author_wants_it() {
     let small = figure::draw(&mut studio, &scene("at = [0.5, 0.5]"), &request([90, 60])).unwrap();
     assert!(told(&small).is_empty());
     // Its line leaves it for the place, which is in the middle of the picture.
-    let line = drawn(&mut studio, &scene("at = [0.5, 0.2]\nline = { color = \"#00ffff\" }"));
+    let line =
+        drawn(&mut studio, &scene("at = [0.5, 0.2]\nline = { color = \"#00ffff\", width = 6.0, end_width = 1.5 }"));
     for y in [120.0, 140.0, 160.0] {
         assert_eq!(pixel(&line, DVec2::new(320.0, y)), [0, 255, 255, 255], "{y}");
     }

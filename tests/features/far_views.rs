@@ -71,7 +71,7 @@ fn a_far_overlay_looks_as_with_all_triangles() {
     // From the same eye, as pictures of their own: all of the city, and nothing but its ground.
     let mut alone = scene.clone();
     let best_view = alone.lenses.remove(0).best_view().expect("a view").clone();
-    let Some(LocalView::Camera(camera)) = best_view.view() else { panic!("a camera") };
+    let Some(LocalView::Camera { camera, .. }) = best_view.view() else { panic!("a camera") };
     alone.camera = Some(*camera);
     let full = studio.render(&alone, &request([36, 27])).unwrap().rgba;
     alone.style.effects = vec![used("eraser")];

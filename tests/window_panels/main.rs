@@ -414,9 +414,42 @@ fn who_walks_stays_on_the_ground() {
     arrive(&mut harness);
     let there = harness.state().camera().unwrap();
     let bounds = harness.state().city.as_ref().unwrap().model.family_bounds(church);
-    assert_eq!(there.target, bounds.center());
+    let aside = (there.target - there.eye).angle_between(bounds.center() - there.eye);
+    assert!(aside < 0.3, "{there:?} looks at {bounds:?}");
     let outside = (there.eye - bounds.center()).abs().truncate() - 0.5 * bounds.size().truncate();
     assert!(outside.max_element() > 0.0 && there.eye.z < bounds.max.z, "{there:?} stands before {bounds:?}");
+}
+
+/// An eye that is given above the ground is moved as any other, and goes on being given so.
+#[test]
+fn an_eye_above_the_ground_is_moved_like_others() {
+    let mut ends = Vec::new();
+    let mut start = None;
+    for above_ground in [true, false] {
+        let mut harness = window();
+        let context = harness.ctx.clone();
+        until(&mut harness, "the ground", |window| window.city.as_ref().is_some_and(|city| city.index.get().is_some()));
+        if above_ground {
+            let number = harness.state().camera().unwrap().eye.z;
+            harness.state_mut().document.set("camera.above_ground=true").unwrap();
+            let there = harness.state().camera().unwrap();
+            let extent = harness.state().city.as_ref().unwrap().extent;
+            let ground = there.eye.z - number;
+            assert!((extent.min.z - 1.0..extent.max.z).contains(&ground), "{ground} is ground of {extent:?}");
+            start = Some(there);
+        } else {
+            harness.state_mut().document.look(start.unwrap());
+        }
+        harness.step();
+        harness.state_mut().act(&context, Action::Look(Axis::Top));
+        arrive(&mut harness);
+        assert_eq!(harness.state().document.scene().camera_above_ground, above_ground);
+        ends.push(harness.state().camera().unwrap());
+    }
+    assert!(
+        (ends[0].eye - ends[1].eye).length() < 1e-6 && (ends[0].target - ends[1].target).length() < 1e-6,
+        "{ends:?}"
+    );
 }
 
 /// A scene that is saved away from its city can be edited and exported on, and opened again when that is allowed.

@@ -176,7 +176,7 @@ impl Window {
                 }
                 Projection::Orthographic { .. } => false,
             };
-            self.document.look(navigate::with_projection(&camera, to_orthographic, self.fov_y));
+            self.put_eye(navigate::with_projection(&camera, to_orthographic, self.fov_y));
         }
     }
 

@@ -160,7 +160,7 @@ pub fn scene<'a>(files: &[PathBuf], landmarks: impl Iterator<Item = &'a Landmark
         let name = if is_taken(&called) { format!("{called} ({})", i + 1) } else { called };
         let color = parse_hex(LINE_COLORS[i % LINE_COLORS.len()]).unwrap_or_default();
         made.pois.push(Poi { name: name.clone(), place: PoiPlace::Object(landmark.id.clone()) });
-        let view = LocalView::Best { normal: None, fov_y: DEFAULT_FOV };
+        let view = LocalView::Best { normal: None, fov_y: DEFAULT_FOV, highlight: true };
         let shown =
             lens::BestView { pois: vec![name.clone()], depiction: Depiction::View(view), lenses: None, look: None };
         made.lenses.push(Lens::plain(name.clone(), BestViewLens { shown }, color));

@@ -54,9 +54,12 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let (mut studio, warnings) = open(&scene, &options, &written, global)?;
     let mut scene = with_camera(scene, &of_camera, &studio)?;
     if let Some(name) = &arguments.through {
-        let from = studio.camera(&scene, scene.figure.pixels());
+        let from = studio.camera(&*studio.on_ground(&scene).map_err(Failure::failed)?, scene.figure.pixels());
         portal(&scene, name, from)?.redo(&mut scene);
     }
+    // Notes say what the file says; what is drawn has heights of the model.
+    let said = scene;
+    let scene = studio.on_ground(&said).map_err(|error| in_file(arguments, error))?;
     if let Some(object) = studio.building_around(&scene) {
         log::warn!(
             "the eye is in building \"{}\": what is seen are its walls from inside",
@@ -85,12 +88,9 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     let progress = terminal::Progress::spinning("drawing", global);
     let format = Format::of(&arguments.output).map_err(Failure::usage)?;
     let (mut picture, page) =
-        paper::draw(&mut studio, &scene, &request, format).map_err(|error| match (&error, arguments.scene()) {
-            (RenderError::Scene(message), Some(file)) => Failure::failed(format!("{}: {message}", file.display())),
-            _ => Failure::failed(error),
-        })?;
+        paper::draw(&mut studio, &scene, &request, format).map_err(|error| in_file(arguments, error))?;
     drop(progress);
-    let notes = picture::notes_of(&scene, &options);
+    let notes = picture::notes_of(&said, &options);
     for aov in &arguments.aovs {
         write_aov(aov, &picture, scene.lenses.len(), &notes)?;
     }
@@ -110,6 +110,14 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         None => picture::save_picture(&arguments.output, picture.size, &picture.rgba, !arguments.transparent, &notes),
     };
     saved.map_err(output::unwritten)
+}
+
+/// An error of what a scene says names its file.
+fn in_file(arguments: &Arguments, error: RenderError) -> Failure {
+    match (&error, arguments.scene()) {
+        (RenderError::Scene(message), Some(file)) => Failure::failed(format!("{}: {message}", file.display())),
+        _ => Failure::failed(error),
+    }
 }
 
 /// The step through the portal of this name.

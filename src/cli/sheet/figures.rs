@@ -37,12 +37,13 @@ enum Touched {
 pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, RenderError> {
     let wants = |figure| sheet.figures.contains(&figure);
     let mut found = Figures::default();
+    let scene = &*studio.on_ground(&cell.scene)?;
     if let (true, Some(id)) = (wants(CellFigure::VisibleShare), &cell.poi) {
-        found.share = Some(share_in(studio, &cell.scene, cell.scene.figure.pixels(), id)?);
+        found.share = Some(share_in(studio, scene, scene.figure.pixels(), id)?);
     }
     if wants(CellFigure::Occluders) {
-        let asked = Request { statistics: true, ..Request::plain(cell.scene.figure.pixels()) };
-        let statistics = studio.render(&with_its_occluders(&cell.scene), &asked)?.statistics;
+        let asked = Request { statistics: true, ..Request::plain(scene.figure.pixels()) };
+        let statistics = studio.render(&with_its_occluders(scene), &asked)?.statistics;
         let occluders = statistics.lenses.iter().filter_map(|lens| lens.occluders.as_ref());
         let found_by_each: Vec<u64> = occluders.map(|list| list.len() as u64).collect();
         found.touched = Some(match &found_by_each[..] {
@@ -51,8 +52,8 @@ pub fn of(studio: &mut Studio, cell: &Cell, sheet: &Sheet) -> Result<Figures, Re
         });
     }
     if wants(CellFigure::FrameRatio) {
-        let plain = Scene { lenses: Vec::new(), ..cell.scene.clone() };
-        found.ratio = Some(frame_ratio(studio, &cell.scene, &plain, cell.scene.figure.pixels(), sheet.pairs)?);
+        let plain = Scene { lenses: Vec::new(), ..scene.clone() };
+        found.ratio = Some(frame_ratio(studio, scene, &plain, scene.figure.pixels(), sheet.pairs)?);
     }
     Ok(found)
 }

@@ -12,8 +12,10 @@ mod call_out;
 mod moving;
 mod paint;
 mod places;
+mod room;
 mod spots;
 pub mod views;
+mod words;
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -297,8 +299,8 @@ impl Plan {
             let skin = self.image(studio, one, paint::Part::Skin, style.skin.as_deref(), None, gathered)?;
             let is_far = place.is_some_and(|p| style.arrow_distance_m.is_some_and(|most| p.distance > most));
             painter.line(points, style, one.color, skin, is_far, self.size);
-            if let (false, Some(focus)) = (is_far, place.and_then(|p| p.focus.as_ref())) {
-                painter.focus(focus, style, one.color);
+            if let (false, Some(place)) = (is_far, place) {
+                painter.focus(place, style, one.color);
             }
         }
         Ok(())

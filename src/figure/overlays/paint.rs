@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::{DVec2, Vec2};
 
 use crate::{
-    figure::overlays::{Room, views::Local},
+    figure::overlays::{Room, places::Place, views::Local},
     lens::{
         best_view::{LocalView, MapMode},
         color::Srgb,
@@ -129,6 +129,8 @@ pub fn text_height(text: &str, width: u32, em: f32) -> u32 {
     (2.0 * card.pad + card.line * lines.len() as f32).ceil() as u32
 }
 
+/// A caption for which there is no room becomes so much smaller at most, as a part of its size.
+const LEAST_CAPTION: f32 = 0.6;
 /// Lines of text that are counted; no overlay shows more.
 const MOST_LINES: usize = 1000;
 
@@ -258,6 +260,10 @@ impl Painter {
         halo: Option<Halo>,
     ) {
         let room = (right - left - self.em).max(0.0);
+        // Smaller before it is cut.
+        let smaller = (room / self.setter.width(text, style).max(1.0)).min(1.0);
+        let style =
+            if smaller >= LEAST_CAPTION { TextStyle { size_px: smaller * style.size_px, ..style } } else { style };
         let Some(text) = self.setter.wrapped(text, style, room, 1).into_iter().next() else { return };
         let width = self.setter.width(&text, style);
         let base = (0.5 * (top + bottom + CAP_HEIGHT * style.size_px)).round();
@@ -294,7 +300,7 @@ impl Painter {
         is_far: bool,
         size: [u32; 2],
     ) {
-        let color = style.color.unwrap_or(lens_color);
+        let (color, widths) = (style.color.unwrap_or(lens_color), style.widths_in(size));
         if is_far {
             if let [from, to, ..] = points
                 && let Some(direction) = (*to - *from).try_normalize()
@@ -309,31 +315,31 @@ impl Painter {
         if skin.is_none() {
             // Seen on dark and on light ground.
             let rim = f64::from(self.px(2.0));
-            let casing = self.strip(points, style.widths.map(|w| w + rim), WHITE, 0.75);
+            let casing = self.strip(points, widths.map(|w| w + rim), WHITE, 0.75);
             self.pieces.push(Piece::Strip(Strip { fade, ..casing }));
         }
         let color = if skin.is_some() { style.color.unwrap_or(WHITE) } else { color };
-        let strip = self.strip(points, style.widths, color, 1.0);
+        let strip = self.strip(points, widths, color, 1.0);
         self.pieces.push(Piece::Strip(Strip { skin, fade, ..strip }));
     }
 
-    /// What a line ends at: a dot, or the outline of an area.
-    pub fn focus(&mut self, focus: &Focus, style: &ContextLine, lens_color: Srgb) {
+    /// What a line ends at: a dot, or the outline of an object.
+    pub fn focus(&mut self, place: &Place, style: &ContextLine, lens_color: Srgb) {
         let color = style.color.unwrap_or(lens_color);
-        match focus {
-            Focus::Point(at) => {
-                for (radius, color) in [(self.px(5.0), WHITE), (self.px(3.5), color)] {
-                    let (at, radius) = (at.as_vec2(), radius as f32);
-                    let (low, high) = (at - radius, at + radius);
-                    self.panel(low.into(), high.into(), color, 1.0, radius, 1.0);
-                }
+        if let Some(Focus::Point(at)) = place.focus {
+            for (radius, color) in [(self.px(5.0), WHITE), (self.px(3.5), color)] {
+                let (at, radius) = (at.as_vec2(), radius as f32);
+                let (low, high) = (at - radius, at + radius);
+                self.panel(low.into(), high.into(), color, 1.0, radius, 1.0);
             }
-            Focus::Area(ring) => {
-                let closed: Vec<DVec2> = ring.iter().chain(ring.first()).copied().collect();
-                for (width, color, opacity) in [(self.px(4.0), WHITE, 0.75), (self.px(2.0), color, 1.0)] {
-                    let strip = self.strip(&closed, [f64::from(width); 2], color, opacity);
-                    self.pieces.push(Piece::Strip(strip));
-                }
+        }
+        let closed = |ring: &Vec<DVec2>| -> Vec<DVec2> { ring.iter().chain(ring.first()).copied().collect() };
+        let rings: Vec<Vec<DVec2>> = place.outline.iter().map(closed).collect();
+        // All rims first: none lies over the colour of another ring.
+        for (width, color, opacity) in [(self.px(4.0), WHITE, 0.75), (self.px(2.0), color, 1.0)] {
+            for ring in &rings {
+                let strip = self.strip(ring, [f64::from(width); 2], color, opacity);
+                self.pieces.push(Piece::Strip(strip));
             }
         }
     }

@@ -7,6 +7,7 @@ use crate::{
         call_out::{self, Board},
         paint,
         places::{Shown, place},
+        room,
     },
     lens::best_view::Depiction,
     overlay::{
@@ -63,7 +64,12 @@ pub(super) fn spots(
     let laid: Vec<&Shown> = shown.iter().filter(is_laid).collect();
     let taken = boards.iter().filter_map(|spot| spot.board.as_ref()?.blocks(view.size));
     let blocked = blocked.iter().copied().chain(own.iter().map(|spot| spot.rect)).chain(taken).collect();
-    let placed = overlay::place(&layout_of(studio, scene, view, &laid, blocked, em), before);
+    let asked = layout_of(studio, scene, view, &laid, blocked, em);
+    // Where nobody stood before; else all stay about where they are.
+    let busy = if laid.is_empty() || before.is_some() { Vec::new() } else { room::busy(studio, view) };
+    let narrowest = asked.overlays.iter().map(|own| own.min.min_element()).fold(f64::INFINITY, f64::min);
+    let over_objects = room::over_objects(studio, scene, view, &laid, narrowest);
+    let placed = room::placed(&asked, over_objects, scene.layout.along, &busy, before);
     let of_placement = |placement: &overlay::Placement| {
         let lines = placed.lines.iter().filter(|line| line.overlay == placement.id);
         let lines = lines.map(|line| (line.anchor, line.points.clone())).collect();
@@ -88,7 +94,7 @@ fn depth(spot: &Spot) -> f64 {
 fn at_its_place(scene: &Scene, view: &View, one: &Shown, em: f32) -> Option<Spot> {
     let Stand::At(at) = one.overlay.stand else { return None };
     let preferred = preferred_size(one, 1.0, em);
-    let margin = scene.layout.margin_px.round() as i32;
+    let margin = scene.layout.margin_in(view.size) as i32;
     let mut rect = Rect::default();
     for i in 0..2 {
         let room = view.size[i] as i32 - 2 * margin;
@@ -142,7 +148,7 @@ fn line_kind(one: &Shown) -> overlay::LineKind {
 
 /// What an overlay prefers, so many times as large: a card is no higher than its text.
 fn preferred_size(one: &Shown, scale: f64, em: f32) -> [u32; 2] {
-    let [width, height] = one.overlay.size.map(|side| ((f64::from(side) * scale).round() as u32).max(1));
+    let [width, height] = one.size.map(|side| ((f64::from(side) * scale).round() as u32).max(1));
     match &one.best_view.depiction {
         Depiction::Text(text) => [width, height.min(paint::text_height(text, width, em * scale as f32))],
         _ => [width, height],
@@ -169,22 +175,25 @@ fn layout_of(
 ) -> overlay::Request {
     let layout = &scene.layout;
     let size = |side: [u32; 2]| DVec2::new(side[0].into(), side[1].into());
-    let overlays = shown.iter().map(|one| {
-        let preferred = preferred_size(one, 1.0, em);
-        let least = size(least_size(one, preferred));
-        let preferred = size(preferred);
-        overlay::Overlay {
-            id: one.index as u32,
-            priority: one.overlay.priority,
-            min: least,
-            preferred,
-            max: one.overlay.max.map_or(1.5 * preferred, size),
-            anchors: one.focuses().cloned().collect(),
-            lines: line_kind(one),
-            weight: one.overlay.interest,
-            distance: one.places.iter().map(|place| place.distance).fold(f64::INFINITY, f64::min).min(1e9),
-        }
-    });
+    let overlays: Vec<overlay::Overlay> = shown
+        .iter()
+        .map(|one| {
+            let preferred = preferred_size(one, 1.0, em);
+            let least = size(least_size(one, preferred));
+            let preferred = size(preferred);
+            overlay::Overlay {
+                id: one.index as u32,
+                priority: one.overlay.priority,
+                min: least,
+                preferred,
+                max: one.overlay.max.map_or(1.5 * preferred, size),
+                anchors: one.focuses().cloned().collect(),
+                lines: line_kind(one),
+                weight: one.overlay.interest,
+                distance: one.places.iter().map(|place| place.distance).fold(f64::INFINITY, f64::min).min(1e9),
+            }
+        })
+        .collect();
     let avoid = scene.pois.iter().filter_map(|poi| match place(studio, scene, view, poi, false)?.focus? {
         Focus::Point(at) => Some(at),
         Focus::Area(_) => None,
@@ -200,7 +209,7 @@ fn layout_of(
     let [w, h] = view.size.map(f64::from);
     overlay::Request {
         picture: view.size,
-        overlays: overlays.collect(),
+        overlays,
         avoid: avoid.collect(),
         clearance: CLEARANCE_PX * f64::from(em) / 13.0,
         blocked,
@@ -212,8 +221,8 @@ fn layout_of(
                 Sizes::Distance => overlay::SizeRule::ByDistance,
                 Sizes::Interest => overlay::SizeRule::ByInterest,
             },
-            margin: layout.margin_px.round() as u32,
-            gap: layout.gap_px.round() as u32,
+            margin: layout.margin_in(view.size),
+            gap: layout.gap_in(view.size),
             centre_of_interest: layout.exploration_focus.then(|| 0.5 * DVec2::new(w, h)),
             ..overlay::Layout::default()
         },

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    city::CityModel,
+    city::{CityModel, ObjectClass},
     geom::{Aabb, Shape, Sphere},
     lens::{
         BestView, Class, EffectUse, Lens, LensBody, LensKind, Parameter, Placement, Region,
@@ -11,7 +11,7 @@ use crate::{
         chosen::Choice,
     },
     render::picture::{RenderError, Studio},
-    scene::{Figure, PiecePlace, Poi, PoiPlace, Scene, Style},
+    scene::{Figure, PiecePlace, Poi, PoiPlace, Scene, Style, StyleLook},
     view::{Camera, Field, Framing, default_near_m, local},
 };
 
@@ -20,6 +20,12 @@ pub const POINT_RADIUS_M: f64 = 25.0;
 /// From this share on that is seen of an object, of what would be were it alone, what stands before it stays: to cut it away, and the ground with it, would
 /// take more than it gives.
 const CLEAR: f64 = 0.9;
+/// The chroma that is left beside an object that stands out, and how far to white or to black what is there goes.
+const PALE: f64 = 0.25;
+const VEIL: f64 = 0.45;
+/// What buildings are filled with on a map, and how much of it.
+const BUILT: &str = "#b98d6b";
+const FILLED: f64 = 0.7;
 /// How far above all else the eye of a map stands, metres.
 const ABOVE_M: f64 = 100.0;
 
@@ -41,8 +47,8 @@ pub struct Local {
 /// The ball around a point of interest.
 fn ball(studio: &Studio, poi: &Poi) -> Result<Sphere, RenderError> {
     match &poi.place {
-        PoiPlace::At(at) => Ok(Sphere { center: *at, radius: POINT_RADIUS_M }),
-        PoiPlace::Object(id) => studio.ball(id),
+        PoiPlace::At(at) | PoiPlace::AboveGround(at) => Ok(Sphere { center: *at, radius: POINT_RADIUS_M }),
+        PoiPlace::Object(id) => studio.bulk(id).map(|bulk| bulk.ball),
         PoiPlace::On(name) => Err(RenderError::Scene(format!("there is no trajectory \"{name}\""))),
     }
 }
@@ -85,7 +91,8 @@ pub fn local(
         let standing = Poi { name: poi.name.clone(), place: scene.place(poi) };
         let ball = ball(studio, &standing).map_err(of_lens)?;
         // Where it is shown: what moves it here moves it in its view, too, as far as that has the lens.
-        let ball = Sphere { center: studio.deformers(&seen_through(scene, shown), size)?.value(ball.center), ..ball };
+        let center = studio.deformers(&seen_through(scene, shown), size)?.value(ball.center);
+        let ball = Sphere { center, ..ball };
         Ok::<_, RenderError>((standing, ball, ahead.unwrap_or_else(|| local::heading(main))))
     };
     let aspect = f64::from(size[0]) / f64::from(size[1]);
@@ -102,19 +109,19 @@ pub fn local(
         magnification: view.magnification(),
     };
     let camera = match view {
-        LocalView::Best { normal, fov_y } => {
+        LocalView::Best { normal, fov_y, highlight } => {
             let (poi, ball, _) = first()?;
-            match (normal, &poi.place) {
-                (Some(normal), _) => framed(&ball, *normal, *fov_y)?,
-                (None, PoiPlace::Object(id)) => {
-                    let best = studio.best_view(id, *fov_y).map_err(of_lens)?;
-                    let camera = framed(&ball, best.framing.normal, *fov_y)?;
-                    let is_clear = best.seen.unoccluded >= CLEAR;
-                    let near_m = default_near_m(camera.eye.distance(camera.target));
-                    if is_clear { Camera { near_m, ..camera } } else { camera }
+            if let (PoiPlace::Object(id), true) = (&poi.place, highlight) {
+                own.scene.lenses.push(highlighting(id, own.scene.style.look));
+            }
+            let given = *normal;
+            match &poi.place {
+                PoiPlace::Object(id) => {
+                    let field = Field { fov_y: *fov_y, aspect };
+                    best(studio, scene, id, &ball, given, &field, viewer).map_err(of_lens)?
                 }
                 // A place has no facades: from the south-west and from above.
-                (None, PoiPlace::At(_) | PoiPlace::On(_)) => framed(&ball, DVec3::new(-1.0, -1.0, 0.8), *fov_y)?,
+                _ => framed(&ball, given.unwrap_or(DVec3::new(-1.0, -1.0, 0.8)), *fov_y)?,
             }
         }
         LocalView::Mcop { normal, distance_m, fov_y } => local::towards_viewer(main, *normal, *distance_m, *fov_y),
@@ -129,6 +136,9 @@ pub fn local(
             let middle =
                 tracked.map_or(eye, |before| local::followed(before, eye, 0.5 * lazy * height_m * aspect.min(1.0)));
             own.middle = Some(middle);
+            if shown.look.is_none() {
+                draw_as_map(&mut own.scene, model);
+            }
             // Of the city's height alone: an eye that rises sees the same map.
             let top = studio.extent().max.z;
             local::map(middle.extend(if top.is_finite() { top } else { 0.0 }), heading, *height_m, ABOVE_M)
@@ -149,10 +159,33 @@ pub fn local(
             let (_, ball, heading) = first()?;
             local::level(ball.center + *height_m * DVec3::Z, heading, *azimuth, *fov_y)
         }
-        LocalView::Camera(camera) => *camera,
+        LocalView::Camera { camera, .. } => *camera,
     };
     own.scene.camera = Some(camera);
     Ok(own)
+}
+
+/// The camera from where an object is seen best, or from a direction that is `given`: all of it fills the picture, however long it is. `ball`:
+/// that around it, where it is shown.
+fn best(
+    studio: &Studio,
+    scene: &Scene,
+    id: &str,
+    ball: &Sphere,
+    given: Option<DVec3>,
+    field: &Field,
+    viewer: Option<[DVec3; 2]>,
+) -> Result<Camera, RenderError> {
+    let best = given.is_none().then(|| studio.best_view(id, field.fov_y, &scene.sun)).transpose()?;
+    let normal = best.as_ref().map(|best| best.framing.normal).or(given).unwrap_or(DVec3::Z);
+    let bulk = studio.bulk(id)?;
+    let by = ball.center - bulk.ball.center;
+    let corners: Vec<DVec3> = bulk.corners.iter().map(|corner| *corner + by).collect();
+    let framing = Framing::of_points(&corners, ball, normal, field, viewer);
+    let camera = framing.map(|framing| framing.camera()).map_err(|error| RenderError::Scene(error.to_string()))?;
+    let is_clear = best.is_some_and(|best| best.seen.unoccluded >= CLEAR);
+    let near_m = default_near_m(camera.eye.distance(camera.target));
+    Ok(if is_clear { Camera { near_m, ..camera } } else { camera })
 }
 
 /// The scene as the view of a lens has it, still without its camera.
@@ -182,6 +215,64 @@ fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
     own
 }
 
+/// Has a scene look as a map does that says nothing of its look: flat colours, and buildings filled, unless the scene colours what it shows itself.
+fn draw_as_map(scene: &mut Scene, model: &CityModel) {
+    if scene.style.look == StyleLook::Natural {
+        scene.style.look = StyleLook::Map;
+    }
+    if !scene.style.effects.is_empty() {
+        return;
+    }
+    let built = model.objects.iter().filter(|object| object.class == ObjectClass::Building);
+    let mut types: Vec<String> = built.map(|object| model.strings.get(object.kind).to_owned()).collect();
+    types.retain(|kind| !kind.is_empty());
+    types.sort_unstable();
+    types.dedup();
+    if types.is_empty() {
+        return;
+    }
+    let filled = EffectUse {
+        effect: "overlay".into(),
+        class: Class::Inside,
+        blend: None,
+        weight: None,
+        parameters: [
+            ("color".to_owned(), Parameter::Text(BUILT.to_owned())),
+            ("opacity".to_owned(), Parameter::Number(FILLED)),
+        ]
+        .into(),
+    };
+    let fill = Lens {
+        shapes: vec![Region::Thematic(Choice { types, ..Choice::default() })],
+        effects: vec![filled],
+        body: LensBody::None,
+        ..Lens::plain("", LensKind::default(), [0.0; 3])
+    };
+    // Below all others: what lenses of the scene show stays.
+    scene.lenses.insert(0, fill);
+}
+
+/// A lens that lets an object stand out: what is beside it is pale, and dark in looks that are dark.
+fn highlighting(id: &str, look: StyleLook) -> Lens {
+    let used = |effect: &str, parameter: &str, value: f64| EffectUse {
+        effect: effect.into(),
+        class: Class::Rest,
+        blend: None,
+        weight: None,
+        parameters: [(parameter.to_owned(), Parameter::Number(value))].into(),
+    };
+    let veil = match look {
+        StyleLook::Night | StyleLook::Blueprint => used("darken", "amount", VEIL),
+        StyleLook::Natural | StyleLook::Paper | StyleLook::Map => used("brighten", "amount", VEIL),
+    };
+    Lens {
+        shapes: vec![Region::Thematic(Choice { ids: vec![id.to_owned()], ..Choice::default() })],
+        effects: vec![used("saturate", "factor", PALE), veil],
+        body: LensBody::None,
+        ..Lens::plain("", LensKind::default(), [0.0; 3])
+    }
+}
+
 fn is_flat(lens: &Lens) -> bool {
     lens.shapes.iter().any(|s| s.any(&|f| matches!(f, Region::Shape(Shape::Flat { .. }))))
 }
@@ -189,7 +280,7 @@ fn is_flat(lens: &Lens) -> bool {
 /// A lens that leaves nothing but a point of interest and the objects that come within `margin_m` of its box in plan.
 fn alone(poi: &Poi, model: &CityModel, margin_m: f64) -> Lens {
     let near = match &poi.place {
-        PoiPlace::At(at) => Aabb { min: *at, max: *at },
+        PoiPlace::At(at) | PoiPlace::AboveGround(at) => Aabb { min: *at, max: *at },
         PoiPlace::On(_) => Aabb::EMPTY,
         PoiPlace::Object(id) => model.find_object(id).map_or(Aabb::EMPTY, |object| model.family_bounds(object)),
     };

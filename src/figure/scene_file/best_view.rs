@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::{
     figure::scene_file::{
-        camera::{self, CAMERA},
+        camera::{self, CAMERA, Eye},
         check::Fields,
         effects,
         forms::{Behind, Degrees, Form as _, Names, Same, Word},
@@ -40,19 +40,27 @@ const VIEW_KINDS: &[Variant<LocalView>] = &[
         "best",
         "All of the first point of interest: the sphere around it fills the overlay. What is nearer to this eye than that sphere is \
               left out, so that nothing hides it; where the eye is chosen and less than a tenth of the object is hidden, it stays.",
-        LocalView::Best { normal: None, fov_y: DEFAULT_FOV },
+        LocalView::Best { normal: None, fov_y: DEFAULT_FOV, highlight: true },
         LocalView::Best { .. },
         &[
             kind!("best", "Which eye.", "the first that its kind of lens may have"),
             part!(LocalView, key(
                 "normal",
                 Kind::Direction,
-                "where most of its facades is seen from",
+                "where most of its facades is seen from, of two that show as much the sunlit side",
                 "",
                 "The direction from the object to the eye (best-view normal), of any length but 0.",
                 "[-1.0, -1.0, 0.5]",
             ), Same, LocalView::Best { normal, .. } => normal),
             part!(LocalView, FOV, Degrees, LocalView::Best { fov_y, .. } => fov_y),
+            part!(LocalView, key(
+                "highlight",
+                Kind::Boolean,
+                "true",
+                "",
+                "Whether its object stands out: all else is pale, and dark by night. A point that is no object has nothing that stands out.",
+                "false",
+            ), Same, LocalView::Best { highlight, .. } => highlight),
         ]
     ),
     variant!(
@@ -249,8 +257,8 @@ const VIEW_KINDS: &[Variant<LocalView>] = &[
         LocalView,
         "camera",
         "Any eye; its keys are those of `[camera]`.",
-        LocalView::Camera(NOWHERE),
-        LocalView::Camera(_),
+        LocalView::Camera { camera: NOWHERE, above_ground: false },
+        LocalView::Camera { .. },
         &[
             kind!("camera", "Which eye.", "the first that its kind of lens may have"),
             Row::<LocalView>::joint(CAMERA.keys[0], |own, options| camera_key(own, "eye", options)).always(),
@@ -260,6 +268,7 @@ const VIEW_KINDS: &[Variant<LocalView>] = &[
             Row::<LocalView>::joint(CAMERA.keys[4], |own, options| camera_key(own, "fov_deg", options)).always(),
             Row::<LocalView>::joint(CAMERA.keys[5], |own, options| camera_key(own, "height_m", options)).always(),
             Row::<LocalView>::joint(CAMERA.keys[6], |own, options| camera_key(own, "near_m", options)).always(),
+            Row::<LocalView>::joint(CAMERA.keys[7], |own, options| camera_key(own, "above_ground", options)),
         ]
     ),
 ];
@@ -299,9 +308,10 @@ const LOOK_ROWS: &[Row<Look>] = &[
 pub const OWN: [&str; 5] = ["image", "text", "view", "lenses", "look"];
 
 /// The keys of a lens that have no meaning for one with an overlay.
-pub const NOT_OWN: [&str; 13] = [
+pub const NOT_OWN: [&str; 14] = [
     "placement",
     "attached_to",
+    "above_ground",
     "shape",
     "shapes",
     "effects",
@@ -331,8 +341,8 @@ const CAMERA_VIEW: &str = "camera";
 
 /// A key of the camera that a view is.
 fn camera_key(view: &LocalView, key: &str, options: &Options) -> Option<Data> {
-    let LocalView::Camera(camera) = view else { return None };
-    Node::of(camera::written(camera, options)).entry(key).map(|node| node.data.clone())
+    let &LocalView::Camera { camera, above_ground } = view else { return None };
+    Node::of(camera::written(&Eye { camera, above_ground }, options)).entry(key).map(|node| node.data.clone())
 }
 
 /// The view of a lens of this kind; noted and `None` where something is wrong.
@@ -359,7 +369,9 @@ fn read_view(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<Lo
     let view = VIEW_KINDS.iter().find(|view| view.table.name == word)?;
     let own = reader.checker.fields(node, &view.table, &[], place);
     match word {
-        CAMERA_VIEW => camera::read(reader, &own).map(LocalView::Camera),
+        CAMERA_VIEW => {
+            camera::read(reader, &own).map(|Eye { camera, above_ground }| LocalView::Camera { camera, above_ground })
+        }
         _ => view.read(&own, reader),
     }
 }

@@ -25,16 +25,14 @@ pub const CAMERA: Table = Table {
     keys: keys_of!(CAMERA_ROWS),
 };
 
-const CAMERA_ROWS: &[Row<Camera>] = &[
-    field!(
-        key("eye", Kind::Point, "", "m", "Where the eye is.", "[78500.0, 457800.0, 150.0]"),
-        Same,
-        |camera: Camera| camera.eye
-    ),
+const CAMERA_ROWS: &[Row<Eye>] = &[
+    field!(key("eye", Kind::Point, "", "m", "Where the eye is.", "[78500.0, 457800.0, 150.0]"), Same, |own: Eye| own
+        .camera
+        .eye),
     field!(
         key("target", Kind::Point, "", "m", "What it looks at: any point but `eye`.", "[78600.0, 458000.0, 10.0]"),
         Same,
-        |camera: Camera| camera.target
+        |own: Eye| own.camera.target
     ),
     field!(
         key(
@@ -46,9 +44,9 @@ const CAMERA_ROWS: &[Row<Camera>] = &[
             "[0, 0, 1]",
         ),
         Same,
-        |camera: Camera| camera.up
+        |own: Eye| own.camera.up
     ),
-    Row::<Camera>::joint(
+    Row::<Eye>::joint(
         key(
             "projection",
             Kind::Word { now: &["perspective", "orthographic"], later: &[] },
@@ -57,18 +55,18 @@ const CAMERA_ROWS: &[Row<Camera>] = &[
             "Whether far things look smaller.",
             "\"orthographic\"",
         ),
-        |camera, _| is_flat(camera).then(|| "orthographic".into()),
+        |own, _| is_flat(&own.camera).then(|| "orthographic".into()),
     )
     .always(),
-    Row::<Camera>::joint(
+    Row::<Eye>::joint(
         key("fov_deg", Kind::Number { min: 0.01, max: 179.0 }, "45.0", "degrees", "Vertical field of view.", "60.0"),
-        |camera, _| match &camera.projection {
+        |own, _| match &own.camera.projection {
             Projection::Perspective { fov_y } => Degrees::data(fov_y),
             Projection::Orthographic { .. } => None,
         },
     )
     .always(),
-    Row::<Camera>::joint(
+    Row::<Eye>::joint(
         key(
             "height_m",
             Kind::Number { min: 0.001, max: 1e7 },
@@ -77,13 +75,13 @@ const CAMERA_ROWS: &[Row<Camera>] = &[
             "Height of an orthographic picture.",
             "250.0",
         ),
-        |camera, _| match camera.projection {
+        |own, _| match own.camera.projection {
             Projection::Orthographic { height_m } => Some(height_m.into()),
             Projection::Perspective { .. } => None,
         },
     )
     .always(),
-    Row::<Camera>::joint(
+    Row::<Eye>::joint(
         key(
             "near_m",
             Kind::Number { min: 1e-4, max: 1e6 },
@@ -92,28 +90,54 @@ const CAMERA_ROWS: &[Row<Camera>] = &[
             "What is nearer along the view axis is not drawn.",
             "0.5",
         ),
-        |camera, _| (camera.near_m != default_near_m(camera.eye.distance(camera.target))).then(|| camera.near_m.into()),
+        |Eye { camera, .. }, _| {
+            (camera.near_m != default_near_m(camera.eye.distance(camera.target))).then(|| camera.near_m.into())
+        },
     )
     .always(),
+    field!(
+        key(
+            "above_ground",
+            Kind::Boolean,
+            "false",
+            "",
+            "Whether the heights of `eye` and `target` are metres above the ground at each; see Heights above the ground.",
+            "true",
+        ),
+        Same,
+        |own: Eye| own.above_ground
+    ),
 ];
+
+/// A camera as files have it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Eye {
+    /// The camera.
+    pub camera: Camera,
+    /// Whether heights of it are metres above the ground.
+    pub above_ground: bool,
+}
 
 fn is_flat(camera: &Camera) -> bool {
     matches!(camera.projection, Projection::Orthographic { .. })
 }
 
 /// The table of a camera.
-pub fn written(camera: &Camera, options: &Options) -> Data {
-    row::written(CAMERA_ROWS, camera, &Camera { up: DVec3::Z, ..*camera }, options)
+pub fn written(eye: &Eye, options: &Options) -> Data {
+    let plain = Eye { camera: Camera { up: DVec3::Z, ..eye.camera }, above_ground: false };
+    row::written(CAMERA_ROWS, eye, &plain, options)
 }
 
 /// A camera, of `[camera]` or of a table with its keys.
-pub fn read(reader: &mut Reader, fields: &Fields) -> Option<Camera> {
+pub fn read(reader: &mut Reader, fields: &Fields) -> Option<Eye> {
     let fov_y = fields.number("fov_deg").unwrap_or(DEFAULT_FOV_DEG).to_radians();
     let projection = Projection::Perspective { fov_y };
-    let mut camera = Camera { eye: DVec3::ZERO, target: DVec3::ZERO, up: DVec3::Z, projection, near_m: 0.0 };
-    if !row::read(CAMERA_ROWS, fields, reader, &mut camera) {
+    let camera = Camera { eye: DVec3::ZERO, target: DVec3::ZERO, up: DVec3::Z, projection, near_m: 0.0 };
+    let mut eye = Eye { camera, above_ground: false };
+    if !row::read(CAMERA_ROWS, fields, reader, &mut eye) {
         return None;
     }
+    let camera = &mut eye.camera;
     let distance = camera.eye.distance(camera.target);
     if fields.text("projection") == Some("orthographic") {
         let seen = 2.0 * distance * (0.5 * fov_y).tan();
@@ -133,5 +157,5 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Option<Camera> {
         };
         reader.checker.note(&fields.place, key, fields.line(key), error.to_string());
     }
-    Some(camera)
+    Some(eye)
 }

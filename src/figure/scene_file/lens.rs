@@ -20,6 +20,7 @@ use crate::{
         sprite::{self, SPRITE},
     },
     lens::{Border, BorderUnit, Discrete, Lens, LensKind, Placement, Region, best_view::Depiction},
+    scene::above_ground::heights_of_lens,
     shader::Clip,
 };
 
@@ -92,8 +93,19 @@ const LENS_ROWS: &[Row<Lens>] = &[
         |lens, _| match &lens.placement {
             Placement::Object(id) => Some(Data::table([("object", id.into())])),
             Placement::Poi(name) => Some(Data::table([("poi", name.into())])),
-            Placement::World | Placement::Camera => None,
+            Placement::World | Placement::AboveGround | Placement::Camera => None,
         },
+    ),
+    Row::<Lens>::joint(
+        key(
+            "above_ground",
+            Kind::Boolean,
+            "false",
+            "",
+            "Whether the heights of its shapes, and of the way of a `route`, are metres above the ground at each; see Heights above the ground.",
+            "true",
+        ),
+        |lens, _| (lens.placement == Placement::AboveGround).then(|| true.into()),
     ),
     Row::<Lens>::joint(
         key(
@@ -523,6 +535,11 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Lens {
             reader.checker.note(&fields.place, key, fields.line(key), message);
         }
     }
+    let is_lost = lens.placement == Placement::AboveGround && !heights_of_lens(&mut lens, &mut |_, _| {});
+    if is_lost && !has_overlay {
+        let message = "has a meaning only for shapes with places of their own, and for a route";
+        reader.checker.note(&fields.place, "above_ground", fields.line("above_ground"), message);
+    }
     lens.kind.set_content(content::read(reader, fields, of_effects));
     let is_saved = |shape: &Region| matches!(shape, Region::Sprite { .. });
     let has_saved = lens.shapes.iter().any(|s| s.any(&is_saved));
@@ -552,8 +569,20 @@ fn occluded(reader: &mut Reader, fields: &Fields, shapes: Vec<Region>) -> Vec<Re
 
 fn placement(reader: &mut Reader, fields: &Fields) -> Placement {
     let of_camera = fields.text("placement") == Some("camera");
+    let above_ground = fields.boolean("above_ground") == Some(true);
+    if above_ground && (of_camera || fields.given("attached_to")) {
+        let with = if of_camera { "placement = \"camera\"" } else { "attached_to" };
+        let message = format!(
+            "is given together with {with}: heights are above the ground only where coordinates are the model's"
+        );
+        reader.checker.note(&fields.place, "above_ground", fields.line("above_ground"), message);
+    }
     let Some(node) = fields.node("attached_to") else {
-        return if of_camera { Placement::Camera } else { Placement::World };
+        return match (of_camera, above_ground) {
+            (true, _) => Placement::Camera,
+            (_, true) => Placement::AboveGround,
+            _ => Placement::World,
+        };
     };
     if of_camera {
         let message = "is given together with placement = \"camera\": a lens is fixed to one of them";

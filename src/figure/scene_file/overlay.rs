@@ -88,7 +88,19 @@ const OVERLAY_ROWS: &[Row<Overlay>] = &[
     )
     .after("at"),
     field!(
-        key("size", Kind::Size, "[240, 160]", "pixels", "Its preferred size.", "[320, 200]"),
+        key(
+            "share",
+            Kind::Number { min: 0.01, max: 1.0 },
+            "0.2222",
+            "",
+            "Its preferred height as a share of the picture's, so that it is as large in figures of all sizes; it is half as wide again. In pictures narrower than 16 by 9 a share of 9/16 of their width.",
+            "0.3",
+        ),
+        Same,
+        |overlay: Overlay| overlay.share
+    ),
+    field!(
+        key("size", Kind::Size, "by `share`", "pixels", "Its preferred size, in place of a share.", "[320, 200]"),
         Same,
         |overlay: Overlay| overlay.size
     ),
@@ -246,7 +258,7 @@ const LINE_ROWS: &[Row<ContextLine>] = &[
         key(
             "width",
             Kind::Number { min: 0.0, max: 200.0 },
-            "6.0",
+            "6.0 of 720 that the picture is high, as much of others",
             "pixels",
             "How wide they are at the overlay.",
             "10.0",
@@ -258,7 +270,7 @@ const LINE_ROWS: &[Row<ContextLine>] = &[
         key(
             "end_width",
             Kind::Number { min: 0.0, max: 200.0 },
-            "1.5",
+            "1.5 of 720 that the picture is high, as much of others",
             "pixels",
             "How wide they are at the place.",
             "2.0",
@@ -377,7 +389,7 @@ pub const LAYOUT_ROWS: &[Row<Layout>] = &[
         key(
             "margin",
             Kind::Number { min: 0.0, max: 4096.0 },
-            "16.0",
+            "16.0 of 720 that the picture is high, as much of others",
             "pixels",
             "To the border of the picture.",
             "24.0",
@@ -386,7 +398,14 @@ pub const LAYOUT_ROWS: &[Row<Layout>] = &[
         |layout: Layout| layout.margin_px
     ),
     field!(
-        key("gap", Kind::Number { min: 0.0, max: 4096.0 }, "12.0", "pixels", "Between overlays.", "8.0"),
+        key(
+            "gap",
+            Kind::Number { min: 0.0, max: 4096.0 },
+            "12.0 of 720 that the picture is high, as much of others",
+            "pixels",
+            "Between overlays.",
+            "8.0"
+        ),
         Same,
         |layout: Layout| layout.gap_px
     ),
@@ -455,6 +474,10 @@ fn line_data(line: Option<&ContextLine>, options: &Options) -> Data {
 pub fn read(reader: &mut Reader, fields: &Fields) -> Overlay {
     let mut overlay = Overlay::of("");
     row::read(OVERLAY_ROWS, fields, reader, &mut overlay);
+    if fields.given("share") && fields.given("size") {
+        let message = "is given together with size: a share of the picture, or pixels";
+        reader.checker.note(&fields.place, "share", fields.line("share"), message);
+    }
     overlay
 }
 

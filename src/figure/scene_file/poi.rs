@@ -36,9 +36,21 @@ const POI_ROWS: &[Row<Poi>] = &[
     )
     .always(),
     Row::<Poi>::joint(key("at", Kind::Point, "none", "m", "A point.", "[10.0, 20.0, 3.0]"), |poi, _| match poi.place {
-        PoiPlace::At(at) => Some(at.into()),
+        PoiPlace::At(at) | PoiPlace::AboveGround(at) => Some(at.into()),
         _ => None,
     })
+    .always(),
+    Row::<Poi>::joint(
+        key(
+            "above_ground",
+            Kind::Boolean,
+            "false",
+            "",
+            "Whether the height of `at` is metres above the ground there; see Heights above the ground.",
+            "true",
+        ),
+        |poi, _| matches!(poi.place, PoiPlace::AboveGround(_)).then(|| true.into()),
+    )
     .always(),
     Row::<Poi>::joint(
         key("trajectory", Kind::Text, "none", "", "Name of a `[[trajectory]]`: it moves along it.", "\"tram 1\""),
@@ -61,6 +73,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Option<Poi> {
     let given: Vec<&str> = ["object", "at", "trajectory"].into_iter().filter(|key| fields.given(key)).collect();
     let place = match given[..] {
         ["object"] => PoiPlace::Object(fields.text("object")?.to_owned()),
+        ["at"] if fields.boolean("above_ground") == Some(true) => PoiPlace::AboveGround(fields.point("at")?),
         ["at"] => PoiPlace::At(fields.point("at")?),
         [_] => PoiPlace::On(fields.text("trajectory")?.to_owned()),
         [] => {
@@ -74,5 +87,9 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Option<Poi> {
             return None;
         }
     };
+    if fields.given("above_ground") && !fields.given("at") {
+        let message = "has a meaning only with at = [x, y, z]";
+        reader.checker.note(&fields.place, "above_ground", fields.line("above_ground"), message);
+    }
     Some(Poi { name, place })
 }

@@ -20,6 +20,7 @@ use crate::{
     scene::{
         Anchor, Animation, Background, BaseStyle, Column, Figure, Layout, Overlay, Paper, PiecePlace, Poi, PoiPlace,
         Style, StyleLook, Sun, Technique, TextSize, Transparency,
+        above_ground::heights_of_lens,
         animation::{Change, ChangeKey, Numbers},
         overlay::{Along, BuiltInFrame, CallOut, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes, Stand},
         trajectory::{Pace as WayPace, Trajectory},
@@ -90,6 +91,7 @@ fn figures_of_flats() -> impl Strategy<Value = FlatFigure> {
 fn placements() -> impl Strategy<Value = Placement> {
     prop_oneof![
         Just(Placement::World),
+        Just(Placement::AboveGround),
         Just(Placement::Camera),
         ".{1,6}".prop_map(Placement::Object),
         ".{1,6}".prop_map(Placement::Poi),
@@ -389,12 +391,14 @@ fn local_views() -> impl Strategy<Value = (&'static str, Depiction)> {
     let angle = |tenths: i32| (f64::from(tenths) / 10.0).to_radians();
     let mode = prop::sample::select(MapMode::WORDS.map(|(_, mode)| mode).to_vec());
     let camera = (unit(), fov()).prop_map(|(eye, fov_y)| Camera::looking(eye, DVec3::ZERO, fov_y)).boxed();
+    let view =
+        (camera, any::<bool>()).prop_map(|(camera, above_ground)| LocalView::Camera { camera, above_ground }).boxed();
     let of = |kind: &'static str| move |view: LocalView| (kind, Depiction::View(view));
     prop_oneof![
         ".{1,6}".prop_map(|text| ("annotation", Depiction::Text(text))),
         "[a-zß]{1,6}[.]png".prop_map(|file| ("annotation", Depiction::Image(file.into()))),
-        (prop::option::of(unit()), fov())
-            .prop_map(|(normal, fov_y)| LocalView::Best { normal, fov_y })
+        (prop::option::of(unit()), fov(), any::<bool>())
+            .prop_map(|(normal, fov_y, highlight)| LocalView::Best { normal, fov_y, highlight })
             .prop_map(of("best-view")),
         (unit(), 1e-3..1e6f64, fov())
             .prop_map(|(normal, distance_m, fov_y)| LocalView::Mcop { normal, distance_m, fov_y })
@@ -402,9 +406,9 @@ fn local_views() -> impl Strategy<Value = (&'static str, Depiction)> {
         (unit(), any::<bool>(), any::<bool>(), fov())
             .prop_map(|(direction, of_camera, mirror, fov_y)| LocalView::Scop { direction, of_camera, mirror, fov_y })
             .prop_map(of("best-view")),
-        camera.clone().prop_map(LocalView::Camera).prop_map(of("best-view")),
-        camera.clone().prop_map(LocalView::Camera).prop_map(of("see-through")),
-        camera.prop_map(LocalView::Camera).prop_map(of("portal")),
+        view.clone().prop_map(of("best-view")),
+        view.clone().prop_map(of("see-through")),
+        view.prop_map(of("portal")),
         (1e-3..1e3f64, 1e-3..1e3f64, fov())
             .prop_map(|(distance_m, height_m, fov_y)| LocalView::Follow { distance_m, height_m, fov_y })
             .prop_map(of("best-view")),
@@ -447,7 +451,7 @@ prop_compose! {
 
 prop_compose! {
     fn lines()(kind in prop::sample::select(LineKind::WORDS.map(|(_, k)| k).to_vec()), color in prop::option::of(prop::array::uniform3(0.0..=1.0f32)),
-        widths in prop::array::uniform2(0.0..200.0f64), skin in prop::option::of("[a-z]{1,4}"), area in any::<bool>(), hidden in any::<bool>(),
+        widths in prop::array::uniform2(prop::option::of(0.0..200.0f64)), skin in prop::option::of("[a-z]{1,4}"), area in any::<bool>(), hidden in any::<bool>(),
         arrow_distance_m in prop::option::of(0.0..1e6f64), fade in prop::option::of((0.0..100.0f64, 0.0..300.0f64))) -> ContextLine {
         ContextLine {
             kind, color, widths, arrow_distance_m,
@@ -471,13 +475,13 @@ fn stands() -> impl Strategy<Value = Stand> {
 }
 
 prop_compose! {
-    fn overlays()(priority in -1e3..1e3f64, interest in 0.0..=1.0f64, size in prop::array::uniform2(2..2000u32), has_sizes in any::<[bool; 2]>(),
+    fn overlays()(priority in -1e3..1e3f64, interest in 0.0..=1.0f64, size in prop::array::uniform2(2..2000u32), has_sizes in any::<[bool; 3]>(), share in 0.01..=1.0f64,
         opacity in 0.0..=1.0f64, frame in prop::option::of(prop::sample::select(BuiltInFrame::WORDS.map(|(_, f)| f).to_vec())), masks in prop::array::uniform2(prop::option::of("[a-z]{1,4}")),
         caption in prop::option::of(".{1,6}"), line in prop::option::of(lines()), stand in stands()) -> Overlay {
         let masks = masks.map(|file| file.map(Into::into));
         let [alpha, images] = masks;
         Overlay {
-            lens: String::new(), priority, interest, stand, size, opacity, caption, line,
+            lens: String::new(), priority, interest, stand, size: has_sizes[2].then_some(size), share: if has_sizes[2] { Overlay::SHARE } else { share }, opacity, caption, line,
             min: has_sizes[0].then(|| size.map(|side| side / 2)),
             max: has_sizes[1].then(|| size.map(|side| side + 7)),
             frame: frame.map_or(Frame::Images { alpha, frame: images }, Frame::BuiltIn),
@@ -487,7 +491,7 @@ prop_compose! {
 
 prop_compose! {
     fn layouts()(along in prop::sample::select(Along::WORDS.map(|(_, a)| a).to_vec()), sizes in prop::sample::select(Sizes::WORDS.map(|(_, s)| s).to_vec()),
-        exploration_focus in any::<bool>(), margin_px in 0.0..100.0f64, gap_px in 0.0..100.0f64) -> Layout {
+        exploration_focus in any::<bool>(), margin_px in prop::option::of(0.0..100.0f64), gap_px in prop::option::of(0.0..100.0f64)) -> Layout {
         Layout { along, sizes, exploration_focus, margin_px, gap_px }
     }
 }
@@ -560,13 +564,13 @@ fn transparencies() -> impl Strategy<Value = Transparency> {
 prop_compose! {
     /// Ways, without their names; those by times have one for each point, and one more where they are closed.
     fn ways()(points in prop::collection::vec(point(), 2..5), by_speed in any::<bool>(), speed in 1e-6..1e3f64,
-        steps in prop::collection::vec(1e-3..1e3f64, 5), flags in prop::array::uniform4(any::<bool>()), start_s in -1e6..1e6f64,
+        steps in prop::collection::vec(1e-3..1e3f64, 5), flags in prop::array::uniform4(any::<bool>()), start_s in -1e6..1e6f64, above_ground in any::<bool>(),
         color in prop::array::uniform3(0.0..=1.0f32)) -> Trajectory {
         let [is_closed, is_smooth, marker, trace] = flags;
         let count = points.len() + usize::from(is_closed);
         let times = steps[..count].iter().scan(0.0, |sum, step| { *sum += step; Some(*sum) }).collect();
         let pace = if by_speed { WayPace::Speed(speed) } else { WayPace::Times(times) };
-        Trajectory { name: String::new(), points, pace, form: path::Form { is_closed, is_smooth }, start_s, color, marker, trace }
+        Trajectory { name: String::new(), points, above_ground, pace, form: path::Form { is_closed, is_smooth }, start_s, color, marker, trace }
     }
 }
 
@@ -591,6 +595,10 @@ prop_compose! {
         let up = if clay { DVec3::Z } else { target };
         for (i, lens) in lenses.iter_mut().enumerate() {
             lens.name = format!("n\"{i}\\ü");
+            // What has no heights has none above the ground.
+            if lens.placement == Placement::AboveGround && !heights_of_lens(lens, &mut |_, _| {}) {
+                lens.placement = Placement::World;
+            }
         }
         // What views name has to be there.
         let mut pois = poi;
@@ -618,9 +626,10 @@ prop_compose! {
             overlays,
             layout: layout.unwrap_or_default(),
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
+            camera_above_ground: with_camera && ground,
             sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2, ..Sun::default() },
             style: Style { look: StyleLook::WORDS[sun.0.unsigned_abs() as usize % 5].1, base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency, chord_px },
-            pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else { PoiPlace::At(at) } }).chain(moving).collect(),
+            pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else if i == 1 { PoiPlace::AboveGround(at) } else { PoiPlace::At(at) } }).chain(moving).collect(),
             lenses,
             figure: Figure { size: if figure.paper.is_some() { figure.size } else { size }, samples: Some(samples), ..figure },
             animation,

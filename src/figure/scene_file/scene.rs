@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::{
     figure::scene_file::{
         animation::{self, ANIMATION},
-        camera::{self, CAMERA},
+        camera::{self, CAMERA, Eye},
         check::{Fields, Place},
         city::{CITY, CITY_ROWS, SUN, SUN_ROWS},
         figure::{self, FIGURE, FIGURE_ROWS},
@@ -73,8 +73,15 @@ const SECTIONS: &[Section] = &[
             "{ eye = [0, -90, 60], target = [0, 0, 5] }",
         ),
         holds: Holds::Table(
-            |scene, options| scene.camera.as_ref().map(|camera| camera::written(camera, options)),
-            |reader, fields, scene| scene.camera = camera::read(reader, fields),
+            |scene, options| {
+                let above_ground = scene.camera_above_ground;
+                scene.camera.map(|camera| camera::written(&Eye { camera, above_ground }, options))
+            },
+            |reader, fields, scene| {
+                let eye = camera::read(reader, fields);
+                scene.camera = eye.map(|eye| eye.camera);
+                scene.camera_above_ground = eye.is_some_and(|eye| eye.above_ground);
+            },
         ),
     },
     Section {

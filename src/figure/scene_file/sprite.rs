@@ -2,7 +2,7 @@
 
 use crate::{
     figure::scene_file::{
-        camera::{self, CAMERA},
+        camera::{self, CAMERA, Eye},
         check::Fields,
         forms::{Same, Word},
         keys::{FAR_M, Kind, Table, key},
@@ -197,11 +197,11 @@ const ASPECT: f64 = 1.0;
 
 fn eye(given: &mut Given) -> Option<OwnEye> {
     let own = given.table(&SPRITE_CAMERA);
-    Some(OwnEye { camera: camera::read(given.reader, &own)?, aspect: own.number("aspect").unwrap_or(ASPECT) })
+    Some(OwnEye { camera: camera::read(given.reader, &own)?.camera, aspect: own.number("aspect").unwrap_or(ASPECT) })
 }
 
 fn eye_data(own: &OwnEye, options: &Options) -> Data {
-    let mut data = camera::written(&own.camera, options);
+    let mut data = camera::written(&Eye { camera: own.camera, above_ground: false }, options);
     if own.aspect != ASPECT {
         data.push("aspect", own.aspect);
     }

@@ -59,6 +59,18 @@ const TRAJECTORY_ROWS: &[Row<Trajectory>] = &[
         Same,
         |way: Trajectory| way.points
     ),
+    field!(
+        key(
+            "above_ground",
+            Kind::Boolean,
+            "false",
+            "",
+            "Whether the heights of `points` are metres above the ground, which it follows between them, too; see Heights above the ground.",
+            "true",
+        ),
+        Same,
+        |way: Trajectory| way.above_ground
+    ),
     Row::<Trajectory>::joint(
         key(
             "speed_m_s",
@@ -145,6 +157,7 @@ fn plain(index: usize) -> Trajectory {
         points: Vec::new(),
         pace: Pace::Speed(0.0),
         form: Form { is_closed: false, is_smooth: false },
+        above_ground: false,
         start_s: 0.0,
         color: lens_color(index),
         marker: true,

@@ -103,7 +103,7 @@ fn problem_line(setting: &Setting, error: &SceneFileError, cell: &str) -> String
 fn poi_of(sheet: &Sheet, scene: &Scene) -> Result<String, String> {
     let id = |place: &PoiPlace| match place {
         PoiPlace::Object(id) => Some(id.clone()),
-        PoiPlace::At(_) | PoiPlace::On(_) => None,
+        PoiPlace::At(_) | PoiPlace::AboveGround(_) | PoiPlace::On(_) => None,
     };
     let Some(name) = &sheet.poi else {
         return scene.pois.iter().find_map(|poi| id(&poi.place)).ok_or_else(|| {

@@ -8,11 +8,15 @@ fn is_unspaced(c: char) -> bool {
         '\u{ff00}'..='\u{ff9f}' | '\u{20000}'..='\u{3ffff}')
 }
 
+/// What has more characters is no word.
+const LONGEST: usize = 24;
+
 /// A word in the pieces between which a line may end (UAX #14): beside Chinese and Japanese characters, but not before what closes
-/// (、 。 」 and small kana) nor after what opens.
+/// (、 。 」 and small kana) nor after what opens. Ids and the like, longer than words are, may end after the signs between their parts.
 pub fn pieces(word: &str) -> Vec<&str> {
     if !word.chars().any(is_unspaced) {
-        return vec![word];
+        let is_long = word.chars().count() > LONGEST;
+        return if is_long { word.split_inclusive(['-', '_', '.', '/']).collect() } else { vec![word] };
     }
     let mut found = Vec::new();
     let (mut start, mut last) = (0, None);
@@ -37,6 +41,14 @@ mod tests {
         for word in ["Rotterdam", "well-known", "a/b", "도시의", "", "½—¾"] {
             assert_eq!(pieces(word), [word]);
         }
+    }
+
+    #[test]
+    fn ids_end_between_their_parts() {
+        let id = "NL.IMBAG.Pand.0503100000031316";
+        assert_eq!(pieces(id), ["NL.", "IMBAG.", "Pand.", "0503100000031316"]);
+        assert_eq!(pieces("GUID_8AEB4C1E-0B4C-4A0F"), ["GUID_8AEB4C1E-0B4C-4A0F"], "no longer than a word");
+        assert_eq!(pieces("GUID_8AEB4C1E-0B4C-4A0F-9").len(), 5);
     }
 
     #[test]

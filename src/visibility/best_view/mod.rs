@@ -6,7 +6,7 @@
 //!   directions ──┴─> rating: sight lines from the eye to the samples ─> score ─> the best, and those clearly different
 //! ```
 //!
-//! The score of a direction is facade · unoccluded · upright, half of it its own and half the mean of its neighbours':
+//! The score of a direction is facade · unoccluded · upright · sunlit, half of it its own and half the mean of its neighbours':
 //!
 //! * *facade*: how much of the object's facades is seen, as large as it appears: Σ w·c·v / Σ w over samples of equal area, v = 1 where
 //!   the sight line from the eye is free and 0 elsewhere, c the cosine between sight line and face normal, w = 1 − ½·n_z²: a flat roof
@@ -14,6 +14,8 @@
 //!   areas across its axes.
 //! * *unoccluded*: that, over the same were the object alone: 1 where nothing else stands before it.
 //! * *upright*: [`upright`], which likes views of people and low drones better than plans.
+//! * *sunlit*, where a sun is given ([`Subject::lit_from`]): 1 where all that is seen is turned to it, 0.7 where nothing is; what stands in the
+//!   light of the object is not asked. So of two sides that show as much the sunlit one is taken.
 //! * *stable*: neighbours are 15° away in azimuth and elevation, so a view that a small turn spoils is worth less than one that it
 //!   does not.
 //!
@@ -28,11 +30,13 @@ mod search;
 #[cfg(test)]
 mod tests;
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use glam::DVec3;
 
 use crate::{
     city::{CityModel, spatial::SpatialIndex},
-    geom::{Ray, Sphere},
+    geom::{Aabb, Ray, Sphere},
     view::{Field, Framing, FramingError},
     visibility::best_view::samples::{Facades, SAMPLES, Sample},
 };
@@ -69,6 +73,9 @@ pub struct Seen {
     pub facade: f64,
     /// The same, were the object alone.
     pub facade_alone: f64,
+    /// How well what is seen is lit by the sun, as large as it appears, 0..=1: 1 where it is turned to it by 60° or less, in proportion
+    /// to the cosine beyond; 1 without a sun, and where nothing is seen.
+    pub lit: f64,
 }
 
 /// A view of an object.
@@ -91,7 +98,12 @@ pub struct Subject<'a> {
     is_own: Vec<bool>,
     /// S = (M, r): the smallest ball around the corners of all that is shown of it, metres.
     pub ball: Sphere,
+    /// Around the same corners, metres; not empty.
+    pub bounds: Aabb,
     facades: Facades,
+    /// The corners of all that is shown of it, metres.
+    corners: Vec<DVec3>,
+    sun: Option<DVec3>,
 }
 
 impl<'a> Subject<'a> {
@@ -104,7 +116,19 @@ impl<'a> Subject<'a> {
         let facades = Facades::new(model, &own).ok_or_else(none)?;
         let corners = samples::corners(model, &own);
         let ball = Sphere::around(&corners).ok_or_else(none)?;
-        Ok(Self { model, index, is_own, ball, facades })
+        let bounds = Aabb::from_points(corners.iter().copied());
+        Ok(Self { model, index, is_own, ball, bounds, facades, corners, sun: None })
+    }
+
+    /// The same in the light of a sun in this direction (unit), if it is above the horizon: views of the sunlit side are better.
+    #[must_use]
+    pub fn lit_from(self, sun: DVec3) -> Self {
+        Self { sun: Some(sun).filter(|sun| sun.z > 0.0), ..self }
+    }
+
+    /// The corners of all that is shown of it, metres; several times where faces meet.
+    pub fn corners(&self) -> &[DVec3] {
+        &self.corners
     }
 
     /// Its views, best first: each the best of those around it, [`APART`] from all before it, and a third as good as the first at least;
@@ -134,7 +158,7 @@ impl<'a> Subject<'a> {
 
     /// The same by every so many-th sample.
     fn seen_by(&self, every: usize, eye: DVec3) -> Seen {
-        let (mut count, mut seen, mut alone) = (0_u32, 0.0, 0.0);
+        let (mut count, mut seen, mut alone, mut lit) = (0_u32, 0.0, 0.0, 0.0);
         for sample in self.facades.samples.iter().step_by(every) {
             let to = sample.at - eye;
             let distance = to.length();
@@ -147,6 +171,7 @@ impl<'a> Subject<'a> {
                 alone += appears;
                 if !by_others {
                     (count, seen) = (count + 1, seen + appears);
+                    lit += appears * self.sun.map_or(1.0, |sun| lit_by(sun, sample.normal, to));
                 }
             }
         }
@@ -156,7 +181,28 @@ impl<'a> Subject<'a> {
             unoccluded: if alone > 0.0 { seen / alone } else { 0.0 },
             facade: share * seen / self.facades.weight,
             facade_alone: share * alone / self.facades.weight,
+            lit: if seen > 0.0 { lit / seen } else { 1.0 },
         }
+    }
+
+    /// The share of the area of its walls that is seen from an eye, 0..=1: of faces steeper than 45°, and of all where none is.
+    pub fn walls_seen(&self, eye: DVec3) -> f64 {
+        let is_wall = |sample: &&Sample| sample.normal.z.abs() < FRAC_1_SQRT_2;
+        let walls: Vec<&Sample> = self.facades.samples.iter().filter(is_wall).collect();
+        let asked = if walls.is_empty() { self.facades.samples.iter().collect() } else { walls };
+        let seen = asked.iter().filter(|sample| self.is_free(eye, sample)).count();
+        seen as f64 / asked.len() as f64
+    }
+
+    /// Whether nothing is before a sample.
+    fn is_free(&self, eye: DVec3, sample: &Sample) -> bool {
+        let ray = Ray { origin: eye, direction: sample.at - eye };
+        let mut is_free = true;
+        self.index.hits_until(self.model, &ray, 1.0 - SKIN_M / ray.direction.length(), |hit| {
+            is_free = hit.triangle == sample.triangle;
+            !is_free
+        });
+        is_free
     }
 
     /// Whether the object itself is before a sample, and whether another is; not asked of what it hides itself. Of a closed body the
@@ -192,6 +238,12 @@ pub fn upright(elevation: f64) -> f64 {
     const FIRST: f64 = std::f64::consts::FRAC_PI_6;
     let t = ((elevation.abs() - FIRST) / (std::f64::consts::FRAC_PI_2 - FIRST)).clamp(0.0, 1.0);
     1.0 - 0.5 * t * t * (3.0 - 2.0 * t)
+}
+
+/// How well the side of a face that an eye looks `to` is lit by a sun: 1 up to 60° from it, none from 90° on.
+fn lit_by(sun: DVec3, normal: DVec3, to: DVec3) -> f64 {
+    let facing = if normal.dot(to) > 0.0 { -normal } else { normal };
+    (2.0 * facing.dot(sun)).clamp(0.0, 1.0)
 }
 
 /// An object and all below it, one flag per object of the city.

@@ -26,6 +26,8 @@ const TIE: f64 = 0.02;
 const GLANCE: usize = 16;
 /// Directions from which that finds most, and from which the way up is tried.
 const GLANCED: usize = 2;
+/// What a view loses, as a part of it, of which nothing is turned to the sun.
+const SHADE: f64 = 0.3;
 /// A step is taken where it gains more than this part.
 const GAIN: f64 = 0.002;
 
@@ -81,7 +83,12 @@ fn around(at: Place, by: i32) -> Vec<Place> {
 /// The score of what is seen from an elevation.
 fn quality(seen: &Seen, elevation: f64, is_alone: bool) -> f64 {
     let facade = if is_alone { seen.facade_alone } else { seen.facade * seen.unoccluded };
-    facade * upright(elevation)
+    facade * upright(elevation) * sunlit(seen.lit)
+}
+
+/// The weight of a view by how well what is seen of the object is lit, 0..=1.
+fn sunlit(lit: f64) -> f64 {
+    1.0 - SHADE * (1.0 - lit)
 }
 
 /// Half of a score is the direction's own, half its neighbours'.
@@ -257,11 +264,13 @@ mod tests {
 
     #[test]
     fn scores_are_those_of_the_formula() {
-        let half_hidden = Seen { visible: 0.3, unoccluded: 0.5, facade: 0.4, facade_alone: 0.8 };
+        let half_hidden = Seen { visible: 0.3, unoccluded: 0.5, facade: 0.4, facade_alone: 0.8, lit: 1.0 };
         let elevation = 30_f64.to_radians();
         assert_eq!(quality(&half_hidden, elevation, false), 0.4 * 0.5 * upright(elevation));
         assert_eq!(quality(&half_hidden, elevation, true), 0.8 * upright(elevation));
         assert!(upright(elevation) > 0.0);
+        let in_shade = Seen { lit: 0.0, ..half_hidden };
+        assert_eq!(quality(&in_shade, elevation, false), (1.0 - SHADE) * quality(&half_hidden, elevation, false));
         assert_eq!(score_of(0.75, &[0.25, 0.5, 0.0, 0.25]), 0.5);
         assert_eq!(score_of(0.75, &[]), 0.75);
     }
