@@ -169,6 +169,11 @@ fn towards_eye(point: Point) -> vec3f {
     return select(-normalize(point.relative), back, view.orthographic == 1u);
 }
 
+// The pixel of a point in the whole picture, whatever part of it is drawn: for patterns.
+fn pixel_in_picture(point: Point) -> vec2i {
+    return point.pixel + vec2i(vec2u(view.first_pixel & 0xffffu, view.first_pixel >> 16u));
+}
+
 // Metres of the picture plane at a point that one pixel spans.
 fn metres_per_pixel(point: Point) -> f32 {
     let at_one = 2.0 / (view.projection.y * view.size.y);

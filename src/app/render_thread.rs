@@ -33,8 +33,8 @@ use crate::{
         self,
         furniture::em_px,
         overlays::Standing,
-        paper::{self, Format},
-        picture::{self, Notes},
+        paper::{self, Format, Target},
+        picture::Notes,
     },
     geom::Aabb,
     gpu::{Gpu, GpuError},
@@ -622,20 +622,17 @@ impl Worker {
     fn write(&mut self, export: &Export) {
         let Export { scene, file, notes } = export;
         let request = Request { samples: scene.figure.samples(), ..Request::plain(scene.figure.pixels()) };
-        let format = Format::of(file);
-        // What is written is not interrupted by what is to be drawn next.
-        let written = self.with_studio(|studio, _| {
-            let interrupt = std::mem::take(&mut studio.interrupt);
-            let drawn = paper::draw(studio, scene, &request, *format.as_ref().unwrap_or(&Format::Png));
-            studio.interrupt = interrupt;
-            drawn
-        });
-        let written = written.map_err(|error| error.to_string()).and_then(|(picture, page)| {
-            let saved = match page {
-                Some(page) => page.save(file, format?, notes, scene.figure.title.as_deref()),
-                None => picture::save_picture(file, picture.size, &picture.rgba, true, notes),
-            };
-            saved.map_err(|error| error.to_string())
+        let written = Format::of(file).and_then(|format| {
+            let target = Target { path: file, format, notes };
+            // What is written is not interrupted by what is to be drawn next.
+            let drawn = self.with_studio(|studio, _| {
+                let interrupt = std::mem::take(&mut studio.interrupt);
+                let drawn = paper::draw(studio, scene, &request, target, &mut |_| Ok(()));
+                studio.interrupt = interrupt;
+                drawn
+            });
+            let (_, drawn) = drawn.map_err(|error| error.to_string())?;
+            drawn.finish().map_err(|error| error.to_string())
         });
         self.tell(match written {
             Ok(()) => Reply::Exported(file.clone()),

@@ -5,6 +5,7 @@
 //! This room knows no files and no commands.
 
 mod bake;
+pub mod bands;
 mod bare;
 mod best_views;
 mod cells;
@@ -79,6 +80,7 @@ mod shells;
 mod sights;
 pub mod silhouettes;
 pub mod solids;
+mod sprite_grid;
 mod sprites;
 pub mod standing;
 pub mod stats;

@@ -19,6 +19,7 @@ use crate::{
         images::Images,
         layers::{LayerFigures, MethodFigures},
         layout,
+        parts::{TILE, Tiling},
         pass::{
             Inputs,
             context::{FrameContext, Preparing},
@@ -67,6 +68,12 @@ impl Renderer {
             ran: Vec::new(),
             gpu,
         })
+    }
+
+    /// How pictures are cut that are too large for a target, where filters look so many pixels far.
+    pub(super) fn tiling(&self, reach: u32) -> Tiling {
+        let most = TILE.min(self.gpu.device.limits().max_texture_dimension_2d);
+        Tiling { most, kept: self.settings.tile, reach }
     }
 
     /// Puts a city on the GPU in place of the last one.

@@ -59,6 +59,7 @@ mod sprites;
 mod studio;
 mod techniques;
 mod thematic;
+mod tiles;
 mod transparency;
 mod warnings;
 mod wrong_input;
