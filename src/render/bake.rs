@@ -113,7 +113,7 @@ impl BakeRequest<'_> {
             origin: volume.bounds.origin.map(|o| o as i32),
             size: volume.bounds.size.map(|s| s as i32),
             texels_per_pixel: grid.texels_per_pixel(),
-            sprite: grid.shift(bounds.origin),
+            sprite: bounds.origin.map(|o| -(o as f32)),
             page: 0,
             first: stored.first,
             width: stored.width(bounds.size[0]),

@@ -2,11 +2,12 @@
 
 use crate::{
     city::decode_normal,
+    gpu::GpuError,
     lens::Class,
     render::{
         parts::{Part, put},
-        picture::{Aovs, RenderError, Request},
         renderer::Renderer,
+        request::{Aovs, Request},
     },
     scene::Drawn,
     view::View,
@@ -97,7 +98,7 @@ impl DrawnBand {
     }
 
     /// Reads the picture that the renderer has drawn of a part.
-    pub fn read_picture(&mut self, renderer: &Renderer, part: Part) -> Result<(), RenderError> {
+    pub fn read_picture(&mut self, renderer: &Renderer, part: Part) -> Result<(), GpuError> {
         let Some(targets) = renderer.targets() else { return Ok(()) };
         let rgba = renderer.gpu.read_texture(&targets.picture.texture, 0, wgpu::TextureAspect::All)?;
         let place = self.place();
@@ -106,7 +107,7 @@ impl DrawnBand {
     }
 
     /// Reads what the unjittered sample left in the targets.
-    pub fn read_aovs(&mut self, renderer: &Renderer, view: &View, part: Part) -> Result<(), RenderError> {
+    pub fn read_aovs(&mut self, renderer: &Renderer, view: &View, part: Part) -> Result<(), GpuError> {
         let Some(targets) = renderer.targets() else { return Ok(()) };
         let place = self.place();
         if let Some(out) = &mut self.band.depth {
@@ -137,7 +138,7 @@ impl DrawnBand {
     }
 
     /// Reads the class bits of all lenses, of which there are `lens_count`.
-    pub fn read_masks(&mut self, renderer: &Renderer, lens_count: usize, part: Part) -> Result<(), RenderError> {
+    pub fn read_masks(&mut self, renderer: &Renderer, lens_count: usize, part: Part) -> Result<(), GpuError> {
         let Some(targets) = renderer.targets() else { return Ok(()) };
         let place = self.place();
         // The GPU holds all three classes, whether or not they were asked for.

@@ -81,18 +81,12 @@ impl LensNumbers {
     }
 }
 
-/// Texels of a sprite per pixel of the picture, and from the first pixel of the tile to the texels of its page.
-pub(super) fn scale_and_shift(sprite: &SeenSprite, on: Place) -> [[f32; 2]; 2] {
-    let shift = sprite.grid.shift(sprite.bounds.origin);
-    [sprite.grid.texels_per_pixel(), std::array::from_fn(|i| on.origin[i] as f32 + shift[i])]
-}
-
 fn place_on_page(volume: &SeenVolume, sprite: &SeenSprite, on: Place) -> layout::SpritePlace {
-    let [scale, shift] = scale_and_shift(sprite, on);
+    let shift = std::array::from_fn(|i| on.origin[i] as f32 - sprite.bounds.origin[i] as f32);
     layout::SpritePlace {
         origin: volume.bounds.origin.map(|o| o as i32),
         size: volume.bounds.size.map(|s| s as i32),
-        texels_per_pixel: scale,
+        texels_per_pixel: sprite.grid.texels_per_pixel(),
         sprite: shift,
         page: on.page,
         ..bytemuck::Zeroable::zeroed()

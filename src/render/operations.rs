@@ -341,6 +341,11 @@ impl Operations {
         filters
     }
 
+    /// How many uses of filters there are.
+    pub fn filter_count(&self) -> u64 {
+        self.list.iter().filter(|operation| operation.is_filter()).count() as u64
+    }
+
     /// How far filters look at most, one after the other, pixels.
     pub fn reach(&self) -> u32 {
         let filters = self.list.iter().filter(|operation| operation.is_filter());

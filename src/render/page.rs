@@ -28,6 +28,9 @@ pub struct BoardApart {
     pub texts: Vec<TextLine>,
 }
 
+/// Bytes of a pixel of a page.
+const PAGE_BYTES: u64 = 8;
+
 impl Renderer {
     /// A page of `size` pixels, sRGB and opaque, row 0 at the top.
     ///
@@ -61,7 +64,7 @@ impl Renderer {
     fn on(&mut self, size: [u32; 2], ground: wgpu::Color, furniture: &Furniture) -> Result<Vec<[u8; 4]>, GpuError> {
         let mut rgba = vec![[0; 4]; size[0] as usize * size[1] as usize];
         let mut on_gpu = FurnitureOnGpu::new(&self.gpu)?;
-        for part in self.tiling(0).rows(size).into_iter().flatten() {
+        for part in self.tiling(PAGE_BYTES, 0).rows(size).into_iter().flatten() {
             let over = Over { whole: size, tile: part.drawn, layered: false };
             let target = self.furniture_on(&mut on_gpu, furniture, over, ground)?;
             let texels = self.gpu.read_texture(&target, 0, wgpu::TextureAspect::All)?;

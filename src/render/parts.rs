@@ -4,6 +4,8 @@ use crate::{render::eye::PictureTile, shader::effect_file::MOST_REACH};
 
 /// Longest side of a target; larger pictures are drawn in tiles.
 pub const TILE: u32 = 4096;
+/// What targets, filters and sprites of a tile may take, bytes: where they would take more, tiles are smaller.
+const TILE_BYTES: u64 = 1 << 30;
 /// The shortest side of a tile that can be asked for.
 pub const LEAST_TILE: u32 = 64;
 /// Pixels by which tiles overlap, so that what looks at neighbours (outlines, edges) has them; filters may reach farther.
@@ -37,6 +39,13 @@ pub(super) fn whole(size: [u32; 2]) -> PictureTile {
 }
 
 impl Tiling {
+    /// How pictures are cut whose pixels take so many bytes each, on targets of at most `side` pixels.
+    pub fn new(side: u32, pixel_bytes: u64, kept: Option<u32>, reach: u32) -> Self {
+        let affordable = (TILE_BYTES / pixel_bytes.max(1)).isqrt() as u32;
+        let least = 2 * OVERLAP + LEAST_TILE;
+        Self { most: TILE.min(affordable.max(least)).min(side), kept, reach }
+    }
+
     /// What one side of a picture is cut into: from where and how much is drawn, and from where to where it is kept.
     fn cuts(&self, side: u32) -> Vec<[u32; 4]> {
         let overlap = OVERLAP.max(8 + self.reach).next_multiple_of(STEP);
@@ -120,9 +129,17 @@ mod tests {
     }
 
     #[test]
+    fn tiles_are_smaller_where_pixels_take_more() {
+        let most = |side, bytes| Tiling::new(side, bytes, None, 0).most;
+        assert_eq!([most(16_384, 48), most(2048, 48), most(16_384, 1024)], [TILE, 2048, 1024]);
+        assert_eq!(most(16_384, 1 << 40), 2 * OVERLAP + LEAST_TILE);
+    }
+
+    #[test]
     fn targets_are_made_once() {
         let sizes = |tiling: Tiling, size| {
-            let mut sizes: Vec<[u32; 2]> = tiling.rows(size).into_iter().flatten().map(|part| part.drawn.size).collect();
+            let mut sizes: Vec<[u32; 2]> =
+                tiling.rows(size).into_iter().flatten().map(|part| part.drawn.size).collect();
             sizes.sort_unstable();
             sizes.dedup();
             sizes

@@ -38,7 +38,7 @@ use crate::{
         layers::{LayerFigures, MethodFigures},
         lens_figures::{FiguresOf, handlers_that_ran, lens_figures},
         moved::Moved,
-        parts::{Part, whole},
+        parts::{Part, Tiling, whole},
         pass::masks::CLEAR_MASKS,
         renderer::Renderer,
         resolve::{Known, ResolveError, Resolved, Surroundings},
@@ -52,8 +52,14 @@ use crate::{
     view::{Camera, CameraError, View, first_view},
 };
 
+pub use crate::render::request::{Aovs, Request};
+
 /// How thick the air is: the share of the horizon's colour that a scene's radius of it adds.
 const HAZE: f64 = 0.035;
+
+/// What the targets of a picture take for each pixel, bytes, and what a filter adds, and what it starts from.
+const PIXEL_BYTES: u64 = 48;
+const FILTER_BYTES: u64 = 16;
 
 /// What can go wrong while drawing.
 #[derive(Debug, thiserror::Error)]
@@ -86,54 +92,6 @@ impl From<ResolveError> for RenderError {
 
 /// Takes the bands of a picture, from the top.
 pub type TakeBand<'a> = dyn FnMut(Band) -> Result<(), Box<dyn Error + Send + Sync>> + 'a;
-
-/// Which AOVs a picture brings along; all of the unjittered sample at the pixel's centre.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Aovs {
-    /// Metres along the view axis.
-    pub depth: bool,
-    /// Object index + 1.
-    pub object_id: bool,
-    /// Unit normals.
-    pub normal: bool,
-    /// Lens membership.
-    pub lens_mask: bool,
-}
-
-/// What is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Request {
-    /// Width, height, pixels.
-    pub size: [u32; 2],
-    /// Samples per pixel, at least 1.
-    pub samples: u32,
-    /// Nothing behind the city.
-    pub transparent: bool,
-    /// AOVs.
-    pub aovs: Aovs,
-    /// Whether passes are timed and lenses counted.
-    pub statistics: bool,
-    /// How shaders are made.
-    pub backend: Backend,
-    /// Whether a picture of one sample tells by itself how the city hides the sky, where the sun has ambient occlusion: as the window does until the
-    /// samples are there.
-    pub screen_occlusion: bool,
-}
-
-impl Request {
-    /// One sample of a picture of this size, and nothing beside it.
-    pub fn plain(size: [u32; 2]) -> Self {
-        Self {
-            size,
-            samples: 1,
-            transparent: false,
-            aovs: Aovs::default(),
-            statistics: false,
-            backend: Backend::default(),
-            screen_occlusion: false,
-        }
-    }
-}
 
 /// An overlay as it lies over a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -243,6 +201,7 @@ impl Studio {
             coplanar: &coplanar,
             ground: ground.as_deref(),
             is_lit_as_before: false,
+            facades: false,
         };
         renderer.set_city(&shown, None)?;
         let mut objects: Vec<u32> = geometries.iter().map(|&g| model.geometries[g as usize].object).collect();
@@ -375,8 +334,8 @@ impl Studio {
         let mut picture = Picture::empty(request, drawn_lenses);
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
-        self.find_cities(&resolved)?;
-        for row in self.renderer.tiling(resolved.operations.reach()).rows(request.size) {
+        self.find_cities(&resolved, drawn.scene.style.facades)?;
+        for row in self.tiling(request, &resolved).rows(request.size) {
             let Some(first) = row.first() else { continue };
             let size = [request.size[0], first.kept.size[1]];
             let mut band = DrawnBand::new(request, first.kept.origin[1], size, drawn_lenses);
@@ -446,9 +405,9 @@ impl Studio {
     ) -> Result<Vec<stats::Pass>, RenderError> {
         let drawn = scene.drawn();
         let resolved = self.resolve(&drawn, request.size, request.samples)?;
-        self.find_cities(&resolved)?;
+        self.find_cities(&resolved, drawn.scene.style.facades)?;
         let mut passes = Vec::new();
-        for part in self.renderer.tiling(resolved.operations.reach()).rows(request.size).into_iter().flatten() {
+        for part in self.tiling(request, &resolved).rows(request.size).into_iter().flatten() {
             let input = input(&drawn.scene, request, &resolved, part.drawn);
             let mut input = FrameInput { furniture, most_triangles, ..input };
             for sample in 0..input.samples {
@@ -476,7 +435,7 @@ impl Studio {
         let drawn = scene.drawn();
         let resolved = self.resolve(&drawn, request.size, request.samples)?;
         let whole = PictureTile::whole(request.size);
-        self.find_cities(&resolved)?;
+        self.find_cities(&resolved, drawn.scene.style.facades)?;
         let mut input = FrameInput { furniture, ..input(&drawn.scene, request, &resolved, whole) };
         let mut passes = Vec::new();
         for sample in 0..input.samples {
@@ -497,35 +456,42 @@ impl Studio {
         Ok(self.renderer.read_sprites(drawn.whole(lens as u32))?)
     }
 
-    /// Puts contents of lenses on the GPU, and edges the first time that something draws lines.
-    fn find_cities(&mut self, resolved: &Resolved) -> Result<(), RenderError> {
+    /// Puts the city on the GPU anew, with block models or without.
+    fn set_city(&mut self, facades: bool, blocks: bool) -> Result<(), RenderError> {
+        let derived = || derive(&self.model, &self.geometries, &Derive { form: Form::Lod1, parts: true });
+        let blocks = blocks.then(derived);
+        let coplanar = coplanar_triangles(&self.model, &self.geometries);
+        let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_deref());
+        let shown = Shown { model, geometries, coplanar: &coplanar, ground, is_lit_as_before: false, facades };
+        self.renderer.set_city(&shown, blocks.as_ref().map(|blocks| &blocks.model))?;
+        self.insets.clear();
+        Ok(())
+    }
+
+    /// Puts contents of lenses on the GPU, edges the first time that something draws lines, and storeys and windows on walls where these are
+    /// wanted.
+    fn find_cities(&mut self, resolved: &Resolved, facades: bool) -> Result<(), RenderError> {
         let edges = resolved.operations.draws_lines();
-        self.renderer.set_contents(&resolved.contents.wanted, self.ground.as_deref(), edges)?;
+        let stale = self.renderer.city().filter(|city| city.has_facades != facades).map(|city| city.has_blocks);
+        if let Some(has_blocks) = stale {
+            self.set_city(facades, has_blocks)?;
+        }
+        self.renderer.set_contents(&resolved.contents.wanted, self.ground.as_deref(), edges, facades)?;
         if self.renderer.has_edges() || !edges {
             return Ok(());
         }
         let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_deref());
-        Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false })?)
+        let shown = Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false, facades };
+        Ok(self.renderer.set_edges(&shown)?)
     }
 
     /// Makes block models of all objects, once, for views that may show no more triangles than `most`, where
     /// the city has more. All insets are drawn again.
     pub(super) fn find_blocks(&mut self, most: u64) -> Result<(), RenderError> {
-        if self.renderer.city().is_none_or(|city| city.has_blocks || city.triangles <= most) {
-            return Ok(());
-        }
+        let large = self.renderer.city().filter(|city| !city.has_blocks && city.triangles > most);
+        let Some(facades) = large.map(|city| city.has_facades) else { return Ok(()) };
         let started = Instant::now();
-        let blocks = derive(&self.model, &self.geometries, &Derive { form: Form::Lod1, parts: true });
-        let coplanar = coplanar_triangles(&self.model, &self.geometries);
-        let shown = Shown {
-            model: &self.model,
-            geometries: &self.geometries,
-            coplanar: &coplanar,
-            ground: self.ground.as_deref(),
-            is_lit_as_before: false,
-        };
-        self.renderer.set_city(&shown, Some(&blocks.model))?;
-        self.insets.clear();
+        self.set_city(facades, true)?;
         log::info!("block models of {} objects in {:.0} ms", self.objects, started.elapsed().as_secs_f64() * 1e3);
         Ok(())
     }
@@ -559,6 +525,25 @@ impl Studio {
     /// What stays from scene to scene.
     pub(super) fn known(&self) -> MutexGuard<'_, Known> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// How a picture is cut.
+    fn tiling(&self, request: &Request, resolved: &Resolved) -> Tiling {
+        let masks = request.statistics || request.aovs.lens_mask;
+        let words = resolved.volumes.iter().map(|volume| 1 + u64::from(volume.lens) / 32).max().unwrap_or(0);
+        let longest = f64::from(request.size[0].max(request.size[1]));
+        let of_sprite = |volume: &LensVolume| {
+            let sprite = volume.sprite.filter(|sprite| sprite.own.is_none())?;
+            let share = sprite.resolution.map_or(1.0, |side| f64::from(side) / longest);
+            let layers = if sprite.aggregate { 1 } else { sprite.layers };
+            Some((f64::from(layers * sprite.format.bits()) / 4.0 * share * share) as u64)
+        };
+        let bytes = PIXEL_BYTES
+            + if request.samples > 1 { 16 } else { 0 }
+            + if masks { 3 * 4 * words } else { 0 }
+            + resolved.operations.filter_count() * FILTER_BYTES
+            + resolved.volumes.iter().filter_map(of_sprite).sum::<u64>();
+        self.renderer.tiling(bytes, resolved.operations.reach())
     }
 
     /// What a scene is in a picture of this size and so many samples.

@@ -58,22 +58,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_texel_of_a_pixel_is_the_same_in_every_tile() {
+    fn a_tile_looks_at_the_texels_of_the_whole_sprite() {
+        let whole = PictureTile::whole([300, 200]);
         for size in [[300, 200], [128, 86], [700, 467]] {
             let of = |tile| SpriteGrid { size, picture: [300, 200], tile };
-            let found = |tile: PictureTile, pixel: [u32; 2]| {
-                let grid = of(tile);
-                let kept = grid.around(PictureTile::whole(tile.size));
-                let (scale, shift) = (grid.texels_per_pixel(), grid.shift(kept.origin));
-                let texel = |i: usize| {
-                    let own = (pixel[i] - tile.origin[i]) as f32 + 0.5;
-                    (own * scale[i] + shift[i]) as u32 + kept.origin[i]
-                };
-                [texel(0), texel(1)]
-            };
             let tile = PictureTile { origin: [96, 64], size: [150, 104] };
-            for pixel in [[96, 64], [97, 100], [151, 131], [245, 167]] {
-                assert_eq!(found(tile, pixel), found(PictureTile::whole([300, 200]), pixel), "{size:?} {pixel:?}");
+            let (grid, kept) = (of(tile), of(tile).around(PictureTile::whole(tile.size)));
+            assert_eq!(of(whole).around(whole), PictureTile::whole(size));
+            assert_eq!(of(whole).shift([3, 5]), [-3.0, -5.0]);
+            let scale = grid.texels_per_pixel();
+            for i in 0..2 {
+                // All that pixels of the tile look at is kept.
+                let texel = |pixel: u32| ((f64::from(pixel) + 0.5) * f64::from(scale[i])) as u32;
+                assert!(texel(tile.origin[i]) >= kept.origin[i] && texel(tile.end(i) - 1) < kept.end(i), "{size:?}");
+                // And made where it is seen: the middle of a texel, in pixels of the tile.
+                let made = (10.5 - grid.shift([0, 0])[i]) * grid.pixels_per_texel()[i];
+                let right = 10.5 / scale[i] - tile.origin[i] as f32;
+                assert!((made - right).abs() < 1e-3, "{made} is not {right}");
             }
         }
     }

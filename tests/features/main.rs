@@ -19,6 +19,7 @@ mod discard;
 mod dither;
 mod effects;
 mod exporters;
+mod facades;
 mod far_views;
 mod faults;
 mod floors;

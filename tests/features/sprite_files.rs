@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use crate::studio::{self, Reference, lens, orthographic, scene, synthetic, used};
 use glam::{DQuat, DVec2, DVec3};
 use veduta::{
-    figure::picture::{Aov, AovFile},
     city::synth,
+    figure::picture::{Aov, AovFile},
     geom::{Aabb, Shape},
     lens::{
         Class, EffectUse, Lens, LensBody, LensSprite, OwnEye, Parameter, Placement, Region, SpriteSpace, classify,

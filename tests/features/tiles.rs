@@ -131,3 +131,31 @@ fn tiles_have_every_look() {
     }
     assert!(all.ids as f64 <= 5e-6 * all.pixels as f64, "{all:?}");
 }
+
+/// What goes by pixels goes by those of the whole picture: patterns of ink, layers by chance, the texels of sprites, doors of pixels.
+#[test]
+fn patterns_and_sprites_know_nothing_of_tiles() {
+    const LENSES: [&str; 5] = [
+        "effects = [\"engraving\"]",
+        "effects = [\"x-ray\"]",
+        "effects = [\"screen-door\"]",
+        "effects = [\"sepia\"]\nsprite = { resolution = 96 }",
+        "effects = [\"sepia\"]\nsprite = { resolution = 700, format = \"unorm16\", layers = 2 }",
+    ];
+    let start = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [-75, -110, 62]\ntarget = [8, 12, 4]\nfov_deg = 46.0\n";
+    let ball = "shape = { kind = \"sphere\", center = [8, 12, 6], radius = 40 }";
+    let two = "shape = { kind = \"difference\", shapes = [{ kind = \"sphere\", center = [8, 12, 6], radius = 40 }, { kind = \"sphere\", center = [0, 0, 6], radius = 20 }] }";
+    for (lens, shape) in LENSES.into_iter().flat_map(|lens| [(lens, ball), (lens, two)]) {
+        let text = format!(
+            "{start}[style]\ntransparency = \"stochastic\"\n[[lens]]\nname = \"l\"\nkind = \"color\"\n{shape}\n{lens}\n"
+        );
+        let scene = scene_file::parse(&text, "patterns", &scene_file::Options::for_command_line());
+        let scene = scene.unwrap_or_else(|error| panic!("{error}"));
+        let mut studio = of_scene(&scene);
+        let request = Request { aovs: ALL, ..Request::plain(SIZE) };
+        let found = differences(&mut studio, &scene, &request, 72);
+        println!("{lens}: {found:?}");
+        let Differences { ids, masks, depths, colors, .. } = found;
+        assert!(ids + masks <= 1 && depths <= 2 && colors <= 6, "{lens}: {found:?}");
+    }
+}

@@ -93,16 +93,17 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         arguments.aovs.iter().map(file).collect::<Result<_, _>>().map_err(output::unwritten)?;
     let target = Target { path: &arguments.output, format, notes: &notes };
     let mut also = |band: &Band| aovs.iter_mut().try_for_each(|aov| aov.take(band));
-    let (mut picture, drawn) = paper::draw(&mut studio, &scene, &request, target, &mut also).map_err(|error| {
-        match (error, arguments.scene()) {
-            (RenderError::Scene(message), Some(file)) => Failure::failed(format!("{}: {message}", file.display())),
-            (RenderError::Taken(error), _) => match error.downcast() {
-                Ok(error) => output::unwritten(*error),
-                Err(error) => Failure::failed(error),
-            },
-            (error, _) => Failure::failed(error),
-        }
-    })?;
+    let (mut picture, drawn) =
+        paper::draw(&mut studio, &scene, &request, target, &mut also).map_err(|error| {
+            match (error, arguments.scene()) {
+                (RenderError::Scene(message), Some(file)) => Failure::failed(format!("{}: {message}", file.display())),
+                (RenderError::Taken(error), _) => match error.downcast() {
+                    Ok(error) => output::unwritten(*error),
+                    Err(error) => Failure::failed(error),
+                },
+                (error, _) => Failure::failed(error),
+            }
+        })?;
     drop(progress);
     aovs.into_iter().try_for_each(AovFile::finish).map_err(output::unwritten)?;
     for sprite in &arguments.sprites {

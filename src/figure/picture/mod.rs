@@ -161,7 +161,11 @@ mod tests {
                 depth: band.depth.as_ref().map(|all| all[row.clone()].to_vec()),
                 object_id: band.object_id.as_ref().map(|all| all[row.clone()].to_vec()),
                 normal: band.normal.as_ref().map(|all| all[row.clone()].to_vec()),
-                lens_mask: band.lens_mask.iter().map(|all| all.iter().map(|p| p[row.clone()].to_vec()).collect()).next(),
+                lens_mask: band
+                    .lens_mask
+                    .iter()
+                    .map(|all| all.iter().map(|p| p[row.clone()].to_vec()).collect())
+                    .next(),
                 ..Band::default()
             })?;
         }
