@@ -595,6 +595,9 @@ fn gather_tile(
     plain.iter_mut().for_each(|gathered| gathered.weld.end_tile());
 }
 
+/// Corners of a triangle, each with its texture coordinate.
+type TexturedCorners = [(CityVertex, [f32; 2]); 3];
+
 /// The corners of a wall without a texture, with their places among storeys and windows, and the group that they are of then; `None`: it has none.
 fn facade_corners(
     model: &CityModel,
@@ -603,7 +606,7 @@ fn facade_corners(
     group: Group,
     facades: &Facades,
     table: &mut SurfaceTable,
-) -> Option<(Group, [(CityVertex, [f32; 2]); 3])> {
+) -> Option<(Group, TexturedCorners)> {
     if group.images.is_some() {
         return None;
     }
@@ -617,12 +620,7 @@ fn facade_corners(
 }
 
 /// The corners of a model triangle that has texture coordinates; `triangle` counts from the model's first.
-fn textured_corners(
-    model: &CityModel,
-    tile: &Tile,
-    triangle: u32,
-    table: &mut SurfaceTable,
-) -> [(CityVertex, [f32; 2]); 3] {
+fn textured_corners(model: &CityModel, tile: &Tile, triangle: u32, table: &mut SurfaceTable) -> TexturedCorners {
     let corners = corners_of(model, tile, triangle);
     [0, 1, 2].map(|k| {
         let vertex = corners[k];

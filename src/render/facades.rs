@@ -213,7 +213,7 @@ fn stretches(model: &CityModel, geometry: u32, textures: &Textures) -> Vec<Stret
 /// Where an upright triangle looks; `None`: it is not upright, or nothing.
 fn facing([a, b, c]: [DVec3; 3]) -> Option<DVec2> {
     let normal = (b - a).cross(c - a).try_normalize()?;
-    (normal.z.abs() < 0.2).then(|| normal.truncate().normalize())
+    (normal.z.abs() < 0.2).then(|| normal.truncate().normalize_or(DVec2::X))
 }
 
 /// The number of the plane that looks there and is so far from the origin; a new one where there is none.

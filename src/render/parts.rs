@@ -110,11 +110,11 @@ mod tests {
                         let Part { drawn, kept } = part;
                         assert!(drawn.size.iter().all(|&side| side <= TILE), "{drawn:?}");
                         assert!(drawn.origin.iter().all(|first| first % STEP == 0), "{drawn:?}");
-                        for i in 0..2 {
+                        for (i, side) in size.into_iter().enumerate() {
                             let [before, after] = [kept.origin[i] - drawn.origin[i], drawn.end(i) - kept.end(i)];
                             let margin = tiling.reach.max(MOST_REACH) + 1;
                             assert!(before >= margin || drawn.origin[i] == 0, "{part:?}");
-                            assert!(after >= margin || drawn.end(i) == size[i], "{part:?}");
+                            assert!(after >= margin || drawn.end(i) == side, "{part:?}");
                         }
                         let ones = vec![1; drawn.size[0] as usize * drawn.size[1] as usize];
                         let before: u64 = hits.iter().map(|&hit| u64::from(hit)).sum();

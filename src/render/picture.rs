@@ -641,7 +641,7 @@ impl Studio {
                 collect(passes, &records, &measures, drawn);
             }
         }
-        band.read_picture(&self.renderer, part)
+        Ok(band.read_picture(&self.renderer, part)?)
     }
 
     #[allow(clippy::too_many_arguments, reason = "all that a picture was made of")]

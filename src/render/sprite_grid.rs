@@ -67,13 +67,13 @@ mod tests {
             assert_eq!(of(whole).around(whole), PictureTile::whole(size));
             assert_eq!(of(whole).shift([3, 5]), [-3.0, -5.0]);
             let scale = grid.texels_per_pixel();
-            for i in 0..2 {
+            for (i, scale) in scale.into_iter().enumerate() {
                 // All that pixels of the tile look at is kept.
-                let texel = |pixel: u32| ((f64::from(pixel) + 0.5) * f64::from(scale[i])) as u32;
+                let texel = |pixel: u32| ((f64::from(pixel) + 0.5) * f64::from(scale)) as u32;
                 assert!(texel(tile.origin[i]) >= kept.origin[i] && texel(tile.end(i) - 1) < kept.end(i), "{size:?}");
                 // And made where it is seen: the middle of a texel, in pixels of the tile.
                 let made = (10.5 - grid.shift([0, 0])[i]) * grid.pixels_per_texel()[i];
-                let right = 10.5 / scale[i] - tile.origin[i] as f32;
+                let right = 10.5 / scale - tile.origin[i] as f32;
                 assert!((made - right).abs() < 1e-3, "{made} is not {right}");
             }
         }

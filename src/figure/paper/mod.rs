@@ -85,7 +85,7 @@ pub struct Drawn {
 
 /// What it is.
 enum Of {
-    Pixels(PictureFile),
+    Pixels(Box<PictureFile>),
     Page { page: Page, format: Format, notes: Notes, title: Option<String> },
 }
 
@@ -123,7 +123,7 @@ pub fn draw(
             also(&band)?;
             Ok(file.rows(&band.rgba)?)
         })?;
-        return Ok((picture, drawn(Of::Pixels(file))));
+        return Ok((picture, drawn(Of::Pixels(Box::new(file)))));
     }
     let mut rgba: Vec<[u8; 4]> = Vec::new();
     let Apart { picture, furniture } = figure::draw_apart(studio, scene, request, &mut |band| {

@@ -47,7 +47,7 @@ pub struct AovFile {
 /// Where its rows go.
 enum To {
     /// Into a PNG at once.
-    Png(PngFile),
+    Png(Box<PngFile>),
     /// Aside, as words of 32 bits, since something must be known of all of them first; with the smallest and the largest finite number.
     Aside { rows: BufWriter<Spool>, is_exr: bool, range: [f32; 2] },
 }
@@ -143,7 +143,7 @@ impl AovFile {
             return Err(WriteError::Format { path: path.to_owned(), message });
         }
         let to = match is_exr || content == Aov::Depth {
-            false => To::Png(PngFile::new(path, content.png(size), notes)?),
+            false => To::Png(Box::new(PngFile::new(path, content.png(size), notes)?)),
             true => {
                 let spool = Spool::beside(path).map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
                 let rows = BufWriter::with_capacity(1 << 16, spool);
