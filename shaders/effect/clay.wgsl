@@ -10,5 +10,5 @@
 //! doc = "The colour."
 
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
-    return p.color * irradiance(point.normal, point.sun);
+    return p.color * point.facade * irradiance(point.normal, point.sun);
 }

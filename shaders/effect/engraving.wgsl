@@ -37,7 +37,7 @@ fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     // The share of ink that gives the picture's luminance back; a little of either stays, for the lines to go on.
     let share = clamp((bright - luminance(color)) / max(bright - dark, 1e-3), 0.04, 0.96);
     let angle = radians(p.angle_deg);
-    let across = dot(vec2f(point.pixel) + 0.5, vec2f(sin(angle), cos(angle))) / p.spacing;
+    let across = dot(vec2f(pixel_in_picture(point)) + 0.5, vec2f(sin(angle), cos(angle))) / p.spacing;
     let half = 0.5 / p.spacing;
     let inked = ink_until(across + half, share) - ink_until(across - half, share);
     return mix(p.paper, p.ink, clamp(inked * p.spacing, 0.0, 1.0));

@@ -38,5 +38,5 @@
 //! doc = "Also edges between faces that go on flat."
 
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
-    return p.paper * mix(1.0, point.shade, p.shading);
+    return p.paper * (mix(1.0, point.shade, p.shading) * mix(1.0, point.facade, 0.5));
 }

@@ -11,11 +11,14 @@ struct Laid {
 
 // A number 0..1 (1 left out) that looks random: PCG (Jarzynski and Olano 2020), of the pixel, the sample and the fragment.
 fn chance(pixel: vec2u, code: u32, depth: f32) -> f32 {
-    var state = pixel.x;
-    state = scrambled(state ^ scrambled(pixel.y + 0x9e3779b9u));
+    // Of the picture, whatever part of it is drawn.
+    let at = pixel + vec2u(view.first_pixel & 0xffffu, view.first_pixel >> 16u);
+    var state = at.x;
+    state = scrambled(state ^ scrambled(at.y + 0x9e3779b9u));
     state = scrambled(state ^ scrambled(view.sample_index + 0x85ebca6bu));
     state = scrambled(state ^ scrambled(code));
-    state = scrambled(state ^ bitcast<u32>(depth));
+    // To a part in two thousand: how depth is rounded goes by the tile that is drawn.
+    state = scrambled(state ^ (bitcast<u32>(depth) >> 12u));
     return f32(state >> 8u) * (1.0 / 16777216.0);
 }
 

@@ -20,5 +20,7 @@ fn is_in_bounds(s: SpritePlace, pixel: vec2i) -> bool {
 }
 
 fn sprite_texel(s: SpritePlace, pixel: vec2i) -> vec2i {
-    return vec2i((vec2f(pixel) + 0.5) * s.texels_per_pixel + s.sprite);
+    // Of the whole picture's pixel: the texel is the same in whatever tile it is drawn.
+    let at = vec2u(pixel) + vec2u(view.first_pixel & 0xffffu, view.first_pixel >> 16u);
+    return vec2i((vec2f(at) + 0.5) * s.texels_per_pixel + s.sprite);
 }

@@ -5,6 +5,7 @@ override TEXTURED: bool = false;    // whether base colours are in a target of t
 override CLAY: bool = false;        // one colour for everything
 override EMITS: bool = false;       // whether some surfaces have light of their own
 override GROUND_FADES: bool = false;    // whether there is a plain ground
+override FACADES: bool = false;     // whether some walls have storeys and windows
 override SECTIONS: bool = false;    // whether some of what is shown are sections; their colours are in the target
 
 // The shown surface at a pixel; `surface` is NO_SURFACE where there is none (D infinite).
@@ -21,7 +22,8 @@ struct Point {
     last_layer: u32,            // how many lie behind the nearest in all
     is_covered: bool,           // of a translucent one: whether the one before it lies in its plane, over it
     natural: vec3f,             // its own colour, linear; where it has a texture, that of the material
-    base: vec3f,                // its colour before light, linear: clay, texture or natural
+    base: vec3f,                // its colour before light, linear: clay, texture or natural, with storeys and windows
+    facade: f32,                // how much of the colour storeys and windows leave, 1 where there are none
     lit: bool,                  // whether light acts on it
     sun: f32,                   // share of the sun that arrives, 0..1
     arriving: vec3f,            // light on a white surface, linear
@@ -74,6 +76,9 @@ fn point_at(pixel: vec2i, ray: Ray, depth: f32) -> Point {
     point.base = base_color(point, pixel);
     if is_section(point.surface) {
         point.natural = point.base;
+    } else if FACADES {
+        point.facade = textureLoad(colors, pixel, 0).a;
+        point.base *= select(1.0, point.facade, CLAY);
     }
     return point;
 }
@@ -106,6 +111,7 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u, share: vec3f) -> Po
         face *= select(1.0, -1.0, dot(face, point.normal) < 0.0);
     }
     point.object = surface.object;
+    point.facade = 1.0;
     point.part = part_of(surface);
     point.lit = CLAY || (surface.flags & SURFACE_UNLIT) == 0u;
     point.natural = surface.color;
@@ -124,7 +130,7 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u, share: vec3f) -> Po
 
 fn nowhere(pixel: vec2i) -> Point {
     return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, PART_OTHER, 0u, 0u, false,
-                 vec3f(0.0), vec3f(0.0), false, 1.0, vec3f(1.0), 1.0, vec3f(0.0), 1.0, vec3f(0.0));
+                 vec3f(0.0), vec3f(0.0), 1.0, false, 1.0, vec3f(1.0), 1.0, vec3f(0.0), 1.0, vec3f(0.0));
 }
 
 // The surface shown beside a point, `offset` pixels away; at the picture's edge, what is at the edge.
@@ -167,6 +173,11 @@ fn before_sky(color: vec3f, point: Point) -> vec3f {
 fn towards_eye(point: Point) -> vec3f {
     let back = vec3f(0.0, 0.0, 1.0) * view.view_from_world;
     return select(-normalize(point.relative), back, view.orthographic == 1u);
+}
+
+// The pixel of a point in the whole picture, whatever part of it is drawn: for patterns.
+fn pixel_in_picture(point: Point) -> vec2i {
+    return point.pixel + vec2i(vec2u(view.first_pixel & 0xffffu, view.first_pixel >> 16u));
 }
 
 // Metres of the picture plane at a point that one pixel spans.

@@ -1,7 +1,7 @@
 // The one opaque geometry pass: what is there, which way it faces, how far it is.
 //
 // target 0  r32uint     surface + 1 (0 = nothing); rg32uint where normals are smooth: y = octahedral normal
-// target 1  rgba8unorm-srgb  base colour; only in cities that have textures
+// target 1  rgba8unorm-srgb  base colour; only in cities that have textures. Alpha: what storeys and windows left of it
 // target 2  r32float    interpolated depth; only where the depth AOV is asked for. A face that shares its
 //                       plane takes its tested depth from the plane; its AOV must not depend on what else
 //                       the city holds, so it is always the face's own.
@@ -109,6 +109,8 @@ override IMAGE_EMITS: bool = false; // whether it says how much light of their o
 @group(3) @binding(5) var normal_sampler: sampler;
 override NORMAL_SCALE: f32 = 0.0;   // what the x and y of its normals are multiplied with; 0: there is none
 
+override FACADE: bool = false;      // whether coordinates are those of storeys and windows, and there is no image
+
 // The least cosine of the angle between a normal of an image and the way to the eye that its face looks at.
 const LEAST_FACING: f32 = 0.02;
 
@@ -123,12 +125,57 @@ struct TexturedVarying {
 // What images show of a face.
 struct Look {
     color: vec3f,               // linear, that of the material in it
+    facade: f32,                // how much of it storeys and windows leave
     opacity: f32,               // of the texel of colours
     light: vec3f,               // share of its own light
     normal: u32,                // octahedral; 0 where the picture has none
 }
 
+// ---- storeys and windows (`render::facades`): the first coordinate has 256 for each storey of the wall, and from 16 on one for each window; the
+// second counts storeys from the ground.
+
+const STOREY_STEP: f32 = 256.0;
+const FIRST_BAY: f32 = 16.0;
+// From where to where a window goes, along the wall and up its storey; and the line between two storeys, around where the lower one ends.
+const WINDOW_ACROSS = vec2f(0.27, 0.73);
+const WINDOW_UP = vec2f(0.3, 0.78);
+const STOREY_LINE = vec2f(0.97, 1.03);
+// What they leave of the wall's colour.
+const WINDOW_SHARE: f32 = 0.6;
+const LINE_SHARE: f32 = 0.86;
+
+// The mean over a width around x of what is 1 between two places of each unit, and else 0; wide means are all the same.
+fn repeated(x: f32, width: f32, ends: vec2f) -> f32 {
+    let share = ends.y - ends.x;
+    let wide = max(width, 1e-4);
+    let low = x - 0.5 * wide - ends.x;
+    let high = low + wide;
+    let until_low = floor(low) * share + min(fract(low), share);
+    let until_high = floor(high) * share + min(fract(high), share);
+    // From half a unit on a mean still goes up and down, though nothing is to be made out any more.
+    return mix((until_high - until_low) / wide, share, smoothstep(0.3, 0.6, width));
+}
+
+fn facade_at(texcoord: vec2f) -> f32 {
+    let storeys = floor(texcoord.x / STOREY_STEP);
+    let at = vec2f(texcoord.x - STOREY_STEP * storeys - FIRST_BAY, texcoord.y);
+    let width = fwidth(texcoord);
+    let soft = max(width.y, 1e-4);
+    // No windows above the last storey, nor below the first.
+    let within = clamp((storeys - at.y) / soft + 0.5, 0.0, 1.0) * clamp(at.y / soft + 0.5, 0.0, 1.0);
+    let window = repeated(at.x, width.x, WINDOW_ACROSS) * repeated(at.y, width.y, WINDOW_UP);
+    // No line on the ground.
+    let lines = clamp((at.y - 0.5) / soft + 0.5, 0.0, 1.0) * clamp((storeys + 0.5 - at.y) / soft + 0.5, 0.0, 1.0);
+    let line = repeated(at.y, width.y, STOREY_LINE);
+    return mix(1.0, WINDOW_SHARE, window * within) * mix(1.0, LINE_SHARE, line * lines);
+}
+
 fn look_at(texcoord: vec2f, normal: vec3f, relative: vec3f, code: u32) -> Look {
+    if FACADE {
+        let share = facade_at(texcoord);
+        let code_of_normal = select(0u, encode_normal(normal), SMOOTH);
+        return Look(surface_at(code - 1u).color * share, share, 1.0, vec3f(1.0), code_of_normal);
+    }
     let texel = textureSample(image, image_sampler, texcoord);
     var light = vec3f(1.0);
     if IMAGE_EMITS {
@@ -138,7 +185,7 @@ fn look_at(texcoord: vec2f, normal: vec3f, relative: vec3f, code: u32) -> Look {
     if NORMAL_SCALE != 0.0 {
         seen = normal_of_image(texcoord, normal, relative);
     }
-    return Look(texel.rgb * surface_at(code - 1u).color, texel.a, light, select(0u, encode_normal(seen), SMOOTH));
+    return Look(texel.rgb * surface_at(code - 1u).color, 1.0, texel.a, light, select(0u, encode_normal(seen), SMOOTH));
 }
 
 // The normal that an image says, in the space that the texture coordinates span on the face (glTF 2.0, section 3.9.3): x along
@@ -192,7 +239,7 @@ fn textured(in: TexturedVarying) -> TexturedFull {
     texel_opacity = select(1.0, look.opacity, TRANSLUCENT);
     cut(in.clip.xy, in.clip.z, in.code);
     let code = vec2u(in.code, look.normal);
-    return TexturedFull(code, vec4f(look.color, 1.0), in.clip.z/*@region*/, vec4f(look.light, 1.0));
+    return TexturedFull(code, vec4f(look.color, look.facade), in.clip.z/*@region*/, vec4f(look.light, 1.0));
 }
 
 // ---- faces of exactly one plane that overlap (hard case 3)
@@ -318,5 +365,5 @@ fn coplanar_textured(in: CoplanarVarying) -> CoplanarTextured {
     cut(in.clip.xy, depth, in.code);
     let own_depth = select(depth, in.clip.z, SNAPPING == 0.0);
     let code = vec2u(in.code, look.normal);
-    return CoplanarTextured(code, vec4f(look.color, 1.0), own_depth/*@region*/, vec4f(look.light, 1.0), depth);
+    return CoplanarTextured(code, vec4f(look.color, look.facade), own_depth/*@region*/, vec4f(look.light, 1.0), depth);
 }

@@ -113,5 +113,5 @@ fn held_textured(in: HeldVarying) -> CoplanarTextured {
     let depths = held_depths(in);
     cut(in.clip.xy, depths.y, in.code);
     let code = vec2u(in.code, look.normal);
-    return CoplanarTextured(code, vec4f(look.color, 1.0), depths.x/*@region*/, vec4f(look.light, 1.0), depths.y);
+    return CoplanarTextured(code, vec4f(look.color, look.facade), depths.x/*@region*/, vec4f(look.light, 1.0), depths.y);
 }

@@ -20,8 +20,10 @@ pub enum Action {
     Save,
     /// To another file.
     SaveAs,
-    /// The figure.
+    /// The figure, or the picture that the window shows.
     Export,
+    /// The picture that the window shows, to the clipboard.
+    CopyPicture,
     /// Closes the window.
     Quit,
     /// Takes the last edit back.
@@ -147,6 +149,7 @@ pub const ROWS: &[Row] = &[
     row(Action::Quit, Menu::File, "Quit", ctrl(Key::Q)),
     row(Action::Undo, Menu::Edit, "Undo", ctrl(Key::Z)),
     row(Action::Redo, Menu::Edit, "Redo", ctrl_shift(Key::Z)),
+    row(Action::CopyPicture, Menu::Edit, "Copy the picture", ctrl_shift(Key::C)),
     row(Action::AddLens(NewLens::Color), Menu::Lens, "Add colour lens", plain(Key::L)),
     row(Action::AddLens(NewLens::XRay), Menu::Lens, "Add x-ray lens", None),
     row(Action::AddLens(NewLens::Eraser), Menu::Lens, "Add eraser lens", None),

@@ -19,8 +19,8 @@ enum End {
 /// Shows what is open.
 pub fn show(window: &mut Window, context: &Context) {
     if let Some(mut dialog) = window.dialog.take() {
-        let note = figure_note(window, &dialog);
-        let response = Modal::new(egui::Id::unique("files")).show(context, |ui| body(&mut dialog, note.as_deref(), ui));
+        let choices = figure_choices(window, &dialog);
+        let response = Modal::new(egui::Id::unique("files")).show(context, |ui| body(&mut dialog, &choices, ui));
         match (response.should_close(), response.inner) {
             (true, _) | (_, End::Cancelled) => window.after_saving = None,
             (_, End::Goes) => window.dialog = Some(dialog),
@@ -41,24 +41,25 @@ pub fn show(window: &mut Window, context: &Context) {
     ask(window, context);
 }
 
-/// A line about the figure that will be written.
-fn figure_note(window: &Window, dialog: &FileDialog) -> Option<String> {
+/// What can be written as a figure, in words: as the scene says, and as the window shows it, where it shows something.
+fn figure_choices(window: &Window, dialog: &FileDialog) -> Vec<(Writing, String)> {
+    if !matches!(dialog.wanted, Wanted::Write(Writing::Figure | Writing::Shown)) {
+        return Vec::new();
+    }
     let figure = &window.document.scene().figure;
-    let [w, h] = figure.pixels();
     let samples = figure.samples();
-    (dialog.wanted == Wanted::Write(Writing::Figure)).then(|| {
-        format!(
-            "{w} × {h} pixels, {samples} {} each; see Figure in the panel on the left.",
-            if samples == 1 { "sample" } else { "samples" }
-        )
-    })
+    let each = if samples == 1 { "sample" } else { "samples" };
+    let line = |what: &str, [w, h]: [u32; 2]| format!("{what}: {w} × {h} pixels, {samples} {each} each");
+    let shown = window.shown_size().map(|size| (Writing::Shown, line("As the window shows it", size)));
+    let own = (Writing::Figure, line("As the scene says (see Figure)", figure.pixels()));
+    std::iter::once(own).chain(shown).collect()
 }
 
-fn body(dialog: &mut FileDialog, note: Option<&str>, ui: &mut Ui) -> End {
+fn body(dialog: &mut FileDialog, choices: &[(Writing, String)], ui: &mut Ui) -> End {
     ui.set_width(520.0);
     ui.heading(dialog.title());
-    if let Some(note) = note {
-        ui.weak(note);
+    for (what, line) in choices {
+        ui.radio_value(&mut dialog.wanted, Wanted::Write(*what), line);
     }
     ui.add_space(4.0);
     let mut goes_to = None;
@@ -193,6 +194,7 @@ fn write(window: &mut Window, file: &Path, what: Writing) {
     match what {
         Writing::Scene => window.save(file),
         Writing::Figure => window.export(file),
+        Writing::Shown => window.export_shown(file),
     }
 }
 

@@ -43,8 +43,10 @@ impl Asking {
 pub enum Writing {
     /// The scene.
     Scene,
-    /// The figure.
+    /// The figure, as the scene says.
     Figure,
+    /// The picture that the window shows.
+    Shown,
 }
 
 /// The purpose of a choice of a file.
@@ -118,7 +120,7 @@ impl FileDialog {
         match self.wanted {
             Wanted::Read | Wanted::Add => &[],
             Wanted::Write(Writing::Scene) => &["toml"],
-            Wanted::Write(Writing::Figure) => &["png", "pdf", "svg"],
+            Wanted::Write(Writing::Figure | Writing::Shown) => &["png", "pdf", "svg"],
         }
     }
 
@@ -169,7 +171,7 @@ impl FileDialog {
             Wanted::Read => "Open city files, a scene or effects",
             Wanted::Add => "Add files to the city",
             Wanted::Write(Writing::Scene) => "Save the scene",
-            Wanted::Write(Writing::Figure) => "Export the figure",
+            Wanted::Write(Writing::Figure | Writing::Shown) => "Export the figure",
         }
     }
 
@@ -178,7 +180,7 @@ impl FileDialog {
             Wanted::Read => "Open",
             Wanted::Add => "Add",
             Wanted::Write(Writing::Scene) => "Save",
-            Wanted::Write(Writing::Figure) => "Export",
+            Wanted::Write(Writing::Figure | Writing::Shown) => "Export",
         }
     }
 }

@@ -23,6 +23,7 @@ use crate::{
 
 pub mod edits;
 mod kinds;
+pub mod looks;
 mod tables;
 mod values;
 mod widget;

@@ -33,8 +33,8 @@ use crate::{
         self,
         furniture::em_px,
         overlays::Standing,
-        paper::{self, Format},
-        picture::{self, Notes},
+        paper::{self, Format, Target},
+        picture::Notes,
     },
     geom::Aabb,
     gpu::{Gpu, GpuError},
@@ -73,6 +73,19 @@ pub struct Draw {
     pub is_measured: bool,
 }
 
+impl Draw {
+    /// The scene as it is drawn in a picture of this size, pixels: what it gives in pixels keeps its share, and what moves has no shadows where
+    /// pictures have to be quick.
+    pub fn scene_at(&self, size: [u32; 2]) -> Scene {
+        let factor = f64::from(size[0]) / f64::from(self.meant_for[0]).max(1.0);
+        let em = f64::from(em_px(&self.scene.figure, self.meant_for));
+        // At its own size it is to be what is exported.
+        let mut scene = if factor == 1.0 { (*self.scene).clone() } else { self.scene.sized(factor, em) };
+        scene.sun.shadows &= !self.is_moving || size == self.size;
+        scene
+    }
+}
+
 /// A picture to write.
 #[derive(Clone, Debug)]
 pub struct Export {
@@ -82,6 +95,8 @@ pub struct Export {
     pub file: PathBuf,
     /// The metadata of the file.
     pub notes: Notes,
+    /// Whether it is the figure of the scene, which a command makes again.
+    pub is_of_scene: bool,
 }
 
 /// A reply of the threads.
@@ -97,8 +112,8 @@ pub enum Reply {
     Frame(Box<Frame>),
     /// A scene could not be drawn.
     NotDrawn(String),
-    /// A picture was written.
-    Exported(PathBuf),
+    /// A picture was written; whether it is the figure of the scene.
+    Exported(PathBuf, bool),
     /// A picture was not.
     NotExported(String),
     /// A user's effect was read, and is called so.
@@ -368,17 +383,6 @@ fn levels_of(model: &CityModel) -> Vec<String> {
     all.into_iter().collect()
 }
 
-/// The scene as it is drawn in a picture of this size: what it gives in pixels keeps its share, and what moves has no shadows where pictures
-/// have to be quick.
-fn shown(draw: &Draw, size: [u32; 2]) -> Scene {
-    let factor = f64::from(size[0]) / f64::from(draw.meant_for[0]).max(1.0);
-    let em = f64::from(em_px(&draw.scene.figure, draw.meant_for));
-    // At its own size it is to be what is exported.
-    let mut scene = if factor == 1.0 { (*draw.scene).clone() } else { draw.scene.sized(factor, em) };
-    scene.sun.shadows &= !draw.is_moving || size == draw.size;
-    scene
-}
-
 /// The same city on another device.
 fn renewed(studio: &Studio, spec: &CitySpec) -> Result<Studio, RenderError> {
     let mut again = Studio::new(Gpu::open()?, studio.model.clone(), spec)?;
@@ -572,7 +576,7 @@ impl Worker {
         let started = Instant::now();
         let scale = if draw.is_moving { SCALES[self.scale] } else { 1.0 };
         let size = draw.size.map(|side| ((f64::from(side) * scale).round() as u32).max(1));
-        let scene = shown(&draw, size);
+        let scene = draw.scene_at(size);
         let still = !draw.is_moving && !is_refined;
         let request = Request {
             samples: if is_refined { SAMPLES } else { 1 },
@@ -624,25 +628,22 @@ impl Worker {
     }
 
     fn write(&mut self, export: &Export) {
-        let Export { scene, file, notes } = export;
+        let Export { scene, file, notes, is_of_scene } = export;
         let request = Request { samples: scene.figure.samples(), ..Request::plain(scene.figure.pixels()) };
-        let format = Format::of(file);
-        // What is written is not interrupted by what is to be drawn next.
-        let written = self.with_studio(|studio, _| {
-            let interrupt = std::mem::take(&mut studio.interrupt);
-            let drawn = paper::draw(studio, scene, &request, *format.as_ref().unwrap_or(&Format::Png));
-            studio.interrupt = interrupt;
-            drawn
-        });
-        let written = written.map_err(|error| error.to_string()).and_then(|(picture, page)| {
-            let saved = match page {
-                Some(page) => page.save(file, format?, notes, scene.figure.title.as_deref()),
-                None => picture::save_picture(file, picture.size, &picture.rgba, true, notes),
-            };
-            saved.map_err(|error| error.to_string())
+        let written = Format::of(file).and_then(|format| {
+            let target = Target { path: file, format, notes };
+            // What is written is not interrupted by what is to be drawn next.
+            let drawn = self.with_studio(|studio, _| {
+                let interrupt = std::mem::take(&mut studio.interrupt);
+                let drawn = paper::draw(studio, scene, &request, target, &mut |_| Ok(()));
+                studio.interrupt = interrupt;
+                drawn
+            });
+            let (_, drawn) = drawn.map_err(|error| error.to_string())?;
+            drawn.finish().map_err(|error| error.to_string())
         });
         self.tell(match written {
-            Ok(()) => Reply::Exported(file.clone()),
+            Ok(()) => Reply::Exported(file.clone(), *is_of_scene),
             Err(error) => Reply::NotExported(error),
         });
     }

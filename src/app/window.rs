@@ -352,7 +352,8 @@ impl Window {
                     self.frame = Some(frame);
                 }
                 Reply::NotDrawn(error) => self.fail(format!("{NOT_DRAWN}{error}")),
-                Reply::Exported(file) => {
+                Reply::Exported(file, false) => self.say(format!("{} is written.", file.display())),
+                Reply::Exported(file, true) => {
                     let mut text = format!("{} is written.", file.display());
                     if let Some(scene) = self.document.file() {
                         self.exported = Some((scene.to_owned(), file));

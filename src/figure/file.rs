@@ -3,7 +3,7 @@
 use std::{
     collections::BTreeSet,
     fs::{self, File, OpenOptions},
-    io::{self, BufWriter, Write},
+    io::{self, BufWriter, Read, Seek, Write},
     path::{Path, PathBuf},
     sync::{
         Mutex, MutexGuard, PoisonError,
@@ -44,27 +44,129 @@ pub enum WriteError {
 /// # Errors
 /// The file system's; and [`WriteError::NoFile`] where `path` is a folder, a disk or a socket.
 pub fn write_whole(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), WriteError> {
-    let failed = |error| WriteError::Io { path: path.to_owned(), error };
-    let buffered = |file: File| BufWriter::with_capacity(1 << 16, file);
-    match target_of(path)? {
-        Target::StandardOutput => {
-            let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
-            write(&mut out).and_then(|()| out.flush()).map_err(failed)
-        }
-        Target::Stream => {
-            let mut out = buffered(OpenOptions::new().write(true).open(path).map_err(failed)?);
-            write(&mut out).and_then(|()| out.flush()).map_err(failed)
-        }
-        Target::File(real) => {
-            let (part, file) = Part::beside(&real).map_err(failed)?;
-            let mut out = buffered(file);
-            write(&mut out).and_then(|()| out.flush()).map_err(failed)?;
-            if let Ok(before) = fs::metadata(&real) {
-                out.get_ref().set_permissions(before.permissions()).map_err(failed)?;
+    let mut file = WholeFile::begin(path)?;
+    write(&mut file).map_err(|error| WriteError::Io { path: path.to_owned(), error })?;
+    file.finish()
+}
+
+/// A file that is being written, and appears when it is finished ([`write_whole`]).
+pub struct WholeFile {
+    path: PathBuf,
+    out: Out,
+}
+
+/// Where it is written to.
+enum Out {
+    StandardOutput(BufWriter<io::Stdout>),
+    Stream(BufWriter<File>),
+    /// A file beside the one it will become.
+    Part {
+        out: BufWriter<File>,
+        part: Part,
+        real: PathBuf,
+    },
+}
+
+impl WholeFile {
+    /// Begins to write `path`, or standard output for `-`.
+    ///
+    /// # Errors
+    /// Those of [`write_whole`].
+    pub fn begin(path: &Path) -> Result<Self, WriteError> {
+        let failed = |error| WriteError::Io { path: path.to_owned(), error };
+        let buffered = |file: File| BufWriter::with_capacity(1 << 16, file);
+        let out = match target_of(path)? {
+            Target::StandardOutput => Out::StandardOutput(BufWriter::with_capacity(1 << 16, io::stdout())),
+            Target::Stream => Out::Stream(buffered(OpenOptions::new().write(true).open(path).map_err(failed)?)),
+            Target::File(real) => {
+                let (part, file) = Part::beside(&real).map_err(failed)?;
+                Out::Part { out: buffered(file), part, real }
             }
-            drop(out);
-            part.into_place(&real).map_err(failed)
+        };
+        Ok(Self { path: path.to_owned(), out })
+    }
+
+    fn out(&mut self) -> &mut dyn Write {
+        match &mut self.out {
+            Out::StandardOutput(out) => out,
+            Out::Stream(out) | Out::Part { out, .. } => out,
         }
+    }
+
+    /// Puts it where it is to be.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    pub fn finish(mut self) -> Result<(), WriteError> {
+        let flushed = self.out().flush();
+        let Self { path, out } = self;
+        let failed = |error| WriteError::Io { path: path.clone(), error };
+        flushed.map_err(failed)?;
+        let Out::Part { out, part, real } = out else { return Ok(()) };
+        if let Ok(before) = fs::metadata(&real) {
+            out.get_ref().set_permissions(before.permissions()).map_err(failed)?;
+        }
+        drop(out);
+        part.into_place(&real).map_err(failed)
+    }
+}
+
+impl Write for WholeFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out().flush()
+    }
+}
+
+/// What is put down for a while, beside a file that is made of it; nothing of it is left in the end.
+pub struct Spool {
+    file: File,
+    _part: Part,
+}
+
+impl Spool {
+    /// An empty one beside `path`; of a stream where the system puts such files.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    pub fn beside(path: &Path) -> io::Result<Self> {
+        let target = written_file(path).unwrap_or_else(|| std::env::temp_dir().join("spool"));
+        let (part, file) = Part::beside(&target)?;
+        Ok(Self { file, _part: part })
+    }
+
+    /// The same, from its beginning.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    pub fn rewound(mut self) -> io::Result<Self> {
+        self.file.rewind()?;
+        Ok(self)
+    }
+}
+
+impl Read for Spool {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.file.read(bytes)
+    }
+}
+
+impl Write for Spool {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Seek for Spool {
+    fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
     }
 }
 
@@ -170,7 +272,7 @@ impl Part {
         let name = format!("{PART}{}-{}.part", std::process::id(), BEGUN.fetch_add(1, Ordering::Relaxed));
         let part = Self { path: folder.join(name) };
         known(&PARTS).insert(part.path.clone());
-        let file = File::create(&part.path)?;
+        let file = OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&part.path)?;
         Ok((part, file))
     }
 

@@ -18,8 +18,8 @@ use crate::{
     },
     render::{
         diagnostics,
-        furniture::Furniture,
-        picture::{Picture, RenderError, Request, ShownOverlay, Studio},
+        furniture::{self as over_pictures, Furniture},
+        picture::{Picture, RenderError, Request, ShownOverlay, Studio, TakeBand},
     },
     scene::Scene,
     view::View,
@@ -70,27 +70,52 @@ pub fn draw_untitled(studio: &mut Studio, scene: &Scene, request: &Request) -> R
 /// A picture, and apart from it what stands over it.
 #[derive(Clone, Debug)]
 pub struct Apart {
-    /// The picture without its furniture.
+    /// The picture without its furniture and its pixels.
     pub picture: Picture,
     /// What [`draw`] draws over it; its images are those that the renderer keeps until it draws something else.
     pub furniture: Furniture,
 }
 
-/// Draws a picture without what stands over it: overlays, and what `[figure]` asks for.
+/// Draws a picture without what stands over it: overlays, and what `[figure]` asks for. `take` gets its pixels, band by band from the top; the picture of
+/// the answer has all but these.
 ///
 /// # Errors
-/// As for [`draw`].
-pub fn draw_apart(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Apart, RenderError> {
+/// As for [`draw_in_bands`].
+pub fn draw_apart(
+    studio: &mut Studio,
+    scene: &Scene,
+    request: &Request,
+    take: &mut TakeBand,
+) -> Result<Apart, RenderError> {
     let scene = &*studio.on_ground(scene)?;
     let own = furniture_of(studio, scene, request.size)?;
     let mut overlays = overlays::overlays(studio, scene, request, &own.taken, &mut Standing::default())?;
     let furniture = over(&mut overlays, own);
     let missing = diagnostics::without_glyph(&furniture);
     diagnostics::boxes(&missing).iter().for_each(|(_, message)| log::warn!("{message}"));
-    let mut picture = studio.render(scene, request)?;
+    let mut picture = studio.render_in_bands(scene, request, &over_pictures::NONE, take)?;
     picture.without_glyph.extend(&missing);
     tell(&mut picture, scene, request, &overlays);
     Ok(Apart { picture, furniture })
+}
+
+/// Draws a picture as [`draw`] does and gives `take` its pixels, band by band from the top; the answer has all but these.
+///
+/// # Errors
+/// As for [`draw`], and where `take` fails.
+pub fn draw_in_bands(
+    studio: &mut Studio,
+    scene: &Scene,
+    request: &Request,
+    take: &mut TakeBand,
+) -> Result<Picture, RenderError> {
+    let scene = &*studio.on_ground(scene)?;
+    let own = furniture_of(studio, scene, request.size)?;
+    let mut overlays = overlays::overlays(studio, scene, request, &own.taken, &mut Standing::default())?;
+    let furniture = over(&mut overlays, own);
+    let mut picture = studio.render_in_bands(scene, request, &furniture, take)?;
+    tell(&mut picture, scene, request, &overlays);
+    Ok(picture)
 }
 
 fn draw_with(

@@ -8,6 +8,7 @@ use crate::{
         layout,
         placed_region::{PlacedLeaf, PlacedRegion},
         seen::{Kept, SeenSprite, SeenVolume},
+        sprite_grid::SpriteGrid,
         stored::{KeptSprite, Stored},
     },
     view::View,
@@ -25,8 +26,8 @@ pub(super) struct BakeRequest<'a> {
     pub lens: u32,
     /// What it is made of.
     pub region: &'a PlacedRegion,
-    /// Width and height of the whole sprite, texels, and the part of it that is kept.
-    pub size: [u32; 2],
+    /// Its texels against the pixels of its eye, and the part of it that is kept.
+    pub grid: SpriteGrid,
     pub bounds: PictureTile,
     /// How it is stored, and where.
     pub stored: Stored,
@@ -37,8 +38,8 @@ pub(super) struct BakeRequest<'a> {
 /// The sprites of the picture's eye, all of which are made in every frame.
 pub(super) fn of_picture<'a>(seen: &[SeenVolume], input: &FrameInput<'a>) -> Vec<BakeRequest<'a>> {
     let request = |v: &SeenVolume| match v.sprite.as_ref()? {
-        &SeenSprite { size, bounds, kept: Kept::Stored(stored) } => {
-            Some(BakeRequest { lens: v.lens, region: &input.volumes[v.index].region, size, bounds, stored, own: None })
+        &SeenSprite { grid, bounds, kept: Kept::Stored(stored) } => {
+            Some(BakeRequest { lens: v.lens, region: &input.volumes[v.index].region, grid, bounds, stored, own: None })
         }
         _ => None,
     };
@@ -55,15 +56,15 @@ impl BakeRequest<'_> {
         u64::from(self.stored.first_list) + texels
     }
 
-    /// What makes it, of a region whose rows are `region`; its eye sees it on a target of `target` pixels.
-    pub fn stage(&self, region: layout::Region, view: layout::View, target: [u32; 2]) -> layout::StoredStage {
-        let &Self { size, bounds, stored, .. } = self;
+    /// What makes it, of a region whose rows are `region`; `view`: what its eye sees.
+    pub fn stage(&self, region: layout::Region, view: layout::View) -> layout::StoredStage {
+        let &Self { grid, bounds, stored, .. } = self;
         let (kind, near, far) = stored.numbers();
         layout::StoredStage {
             view,
             region,
-            pixels_per_texel: std::array::from_fn(|i| target[i] as f32 / size[i] as f32),
-            origin: bounds.origin.map(|o| o as f32),
+            pixels_per_texel: grid.pixels_per_texel(),
+            origin: grid.shift(bounds.origin).map(|texels| -texels),
             width: stored.width(bounds.size[0]),
             height: bounds.size[1],
             layers: stored.layers,
@@ -86,9 +87,9 @@ impl BakeRequest<'_> {
         target: [u32; 2],
         room: u64,
     ) -> Vec<layout::ListStage> {
-        let clip_scale: [f32; 2] = std::array::from_fn(|i| self.size[i] as f32 / target[i] as f32);
+        let (clip_scale, shift) = (self.grid.clip_scale(target), self.grid.shift(self.bounds.origin));
         // Texels count down the target, clip space up.
-        let side = |i: usize| clip_scale[i] - 2.0 * self.bounds.origin[i] as f32 / target[i] as f32 - 1.0;
+        let side = |i: usize| clip_scale[i] + 2.0 * shift[i] / target[i] as f32 - 1.0;
         let list = |(leaf, of): (u32, &PlacedLeaf)| layout::ListStage {
             view: stage.view,
             region: of.rows(own_view, &mut Vec::new()),
@@ -105,13 +106,13 @@ impl BakeRequest<'_> {
     }
 
     /// Where a sprite of the picture's eye stands.
-    pub fn place(&self, volume: &SeenVolume, tile: PictureTile) -> layout::SpritePlace {
-        let &Self { size, bounds, stored, .. } = self;
+    pub fn place(&self, volume: &SeenVolume) -> layout::SpritePlace {
+        let &Self { grid, bounds, stored, .. } = self;
         let (kind, near, far) = stored.numbers();
         layout::SpritePlace {
             origin: volume.bounds.origin.map(|o| o as i32),
             size: volume.bounds.size.map(|s| s as i32),
-            texels_per_pixel: std::array::from_fn(|i| size[i] as f32 / tile.size[i] as f32),
+            texels_per_pixel: grid.texels_per_pixel(),
             sprite: bounds.origin.map(|o| -(o as f32)),
             page: 0,
             first: stored.first,
@@ -135,7 +136,7 @@ pub(super) fn list_target(requests: &[BakeRequest]) -> [u32; 2] {
 pub(super) fn kept_sprites(requests: &[BakeRequest], view: &View) -> Vec<KeptSprite> {
     let kept = |m: &BakeRequest| KeptSprite {
         lens: m.lens,
-        space: SpriteSpace { size: m.size, ..SpriteSpace::of(view) },
+        space: SpriteSpace { size: m.grid.size, ..SpriteSpace::of(view) },
         bounds: m.bounds,
         stored: m.stored,
         is_own: false,

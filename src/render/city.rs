@@ -21,6 +21,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         cells::{CellFigures, Cells, Detail, NO_CELL},
+        facades::Facades,
         layout::{self, CityVertex},
         shells::{Shells, closed_shells},
         surfaces::{self, SurfaceTable},
@@ -99,6 +100,14 @@ pub struct Images {
     pub normal_scale: u32,
     /// What the opacity of the first does.
     pub texels: Texels,
+    /// Whether there is no image: coordinates are those of storeys and windows ([`crate::render::facades`]).
+    pub facade: bool,
+}
+
+impl Images {
+    /// Storeys and windows.
+    const FACADE: Self =
+        Self { color: NONE, emission: NONE, normals: NONE, normal_scale: 0, texels: Texels::Opaque, facade: true };
 }
 
 /// One draw: part of a section.
@@ -178,6 +187,8 @@ pub struct CityBuffers {
     pub(super) cells: Vec<CellFigures>,
     /// Whether it has block models too.
     pub has_blocks: bool,
+    /// Whether its walls were given storeys and windows.
+    pub has_facades: bool,
     /// Whether some faces have smooth normals.
     pub smooth: bool,
     /// Whether some have light of their own.
@@ -211,6 +222,8 @@ pub struct Shown<'a> {
     pub ground: Option<&'a Ground>,
     /// Whether faces are lit by normals that they do not have where they lie: then these are not turned to the eye.
     pub is_lit_as_before: bool,
+    /// Whether walls without textures have storeys and windows.
+    pub facades: bool,
 }
 
 /// Triangles gathered for one section.
@@ -372,11 +385,13 @@ impl CityBuffers {
         let kind = WeldKind { smooth, provoking: provoking_corner(gpu) };
         let mut plain = Group::UNTEXTURED.map(|group| Gathered::new(kind, group));
         let mut textured: FxHashMap<Group, Gathered> = FxHashMap::default();
+        let facades = if shown.facades { Facades::new(shown, &textures) } else { Facades::default() };
         for &(t, cell) in tiles {
             let tile = &shown.model.tiles[t as usize];
             let details = details_of(cell, Detail::Full);
             table.begin_tile();
-            gather_tile(shown.model, tile, &apart, &mut table, &mut plain, &mut textured);
+            let look = Walls { apart: &apart, facades: &facades };
+            gather_tile(shown.model, tile, look, &mut table, &mut plain, &mut textured);
             for gathered in plain.iter_mut().chain(textured.values_mut()) {
                 gathered.close_run(tile.bounds, cell, details);
             }
@@ -394,7 +409,7 @@ impl CityBuffers {
                 sections.push(section);
             }
         };
-        let layers = gather_layers(shown, tiles, &mut table, kind);
+        let layers = gather_layers(shown, tiles, &facades, &mut table, kind);
         let mut entries = table.entries;
         let flat_roofs = blocks.map(|_| surfaces::flat_roofs(shown)).unwrap_or_default();
         let blocks = blocks.map(|model| gather_blocks(model, &flat_roofs, &cells, &mut entries, extent.center(), kind));
@@ -409,17 +424,8 @@ impl CityBuffers {
             push(upload(gpu, kind, gathered, Extra { name: "texture coordinates", each: &gathered.texcoords })?);
         }
         for (number, layer) in (0..).zip(&layers) {
-            for Layer { gathered, planes, .. } in layer {
-                let kind = SectionKind::Coplanar(gathered.group.images);
-                let section = match kind.images() {
-                    None => upload(gpu, kind, gathered, Extra { name: "planes", each: planes })?,
-                    Some(_) => {
-                        let both = planes.iter().zip(&gathered.texcoords);
-                        let both = both.map(|(&plane, &texcoord)| layout::TexturedPlane { plane, texcoord });
-                        let each: Vec<layout::TexturedPlane> = both.collect();
-                        upload(gpu, kind, gathered, Extra { name: "planes and texture coordinates", each: &each })?
-                    }
-                };
+            for layer in layer {
+                let section = layer.upload(gpu)?;
                 push(section.map(|(section, t, v)| (Section { layer: number, ..section }, t, v)));
             }
         }
@@ -441,6 +447,7 @@ impl CityBuffers {
             textures,
             cells: figures,
             has_blocks: blocks.is_some(),
+            has_facades: shown.facades,
             smooth,
             emits,
             texels_emit,
@@ -463,6 +470,7 @@ impl CityBuffers {
             textures: Textures::none(),
             cells: Vec::new(),
             has_blocks: false,
+            has_facades: false,
             smooth: true,
             emits: false,
             texels_emit: false,
@@ -545,28 +553,41 @@ fn has_normals(shown: &Shown, textures: &Textures) -> bool {
     shown.model.materials.iter().any(|material| textures.has(material.normal_texture))
 }
 
+/// What is known of triangles beside the model.
+#[derive(Clone, Copy)]
+struct Walls<'a> {
+    /// Those that overlap others in their plane: they are gathered elsewhere.
+    apart: &'a FxHashSet<u32>,
+    facades: &'a Facades,
+}
+
 fn gather_tile(
     model: &CityModel,
     tile: &Tile,
-    apart: &FxHashSet<u32>,
+    walls: Walls,
     table: &mut SurfaceTable,
     plain: &mut [Gathered],
     textured: &mut FxHashMap<Group, Gathered>,
 ) {
     plain.iter_mut().for_each(|gathered| gathered.weld.begin_tile(tile.origin));
     for triangle in tile.indices.start / 3..tile.indices.end / 3 {
-        if apart.contains(&triangle) {
+        if walls.apart.contains(&triangle) {
             continue;
         }
         let corners = corners_of(model, tile, triangle);
         let [first, ..] = corners;
         let group = table.group(first.surface, tile.texcoords != NONE);
+        let kind = WeldKind { smooth: false, provoking: 0 };
+        if let Some((group, corners)) = facade_corners(model, tile, triangle, group, walls.facades, table) {
+            let target = textured.entry(group).or_insert_with(|| Gathered::new(kind, group));
+            corners.into_iter().for_each(|(vertex, place)| target.push(vertex, place));
+            continue;
+        }
         if let Some(gathered) = plain.iter_mut().find(|gathered| gathered.group == group) {
             let number = table.number(first.surface, first.normal, false);
             gathered.weld.triangle(number, corners.map(|v| Corner { position: v.position, normal: v.normal }));
             continue;
         }
-        let kind = WeldKind { smooth: false, provoking: 0 };
         let target = textured.entry(group).or_insert_with(|| Gathered::new(kind, group));
         let corners = textured_corners(model, tile, triangle, table);
         corners.into_iter().for_each(|(vertex, texcoord)| target.push(vertex, texcoord));
@@ -574,13 +595,32 @@ fn gather_tile(
     plain.iter_mut().for_each(|gathered| gathered.weld.end_tile());
 }
 
-/// The corners of a model triangle that has texture coordinates; `triangle` counts from the model's first.
-fn textured_corners(
+/// Corners of a triangle, each with its texture coordinate.
+type TexturedCorners = [(CityVertex, [f32; 2]); 3];
+
+/// The corners of a wall without a texture, with their places among storeys and windows, and the group that they are of then; `None`: it has none.
+fn facade_corners(
     model: &CityModel,
     tile: &Tile,
     triangle: u32,
+    group: Group,
+    facades: &Facades,
     table: &mut SurfaceTable,
-) -> [(CityVertex, [f32; 2]); 3] {
+) -> Option<(Group, TexturedCorners)> {
+    if group.images.is_some() {
+        return None;
+    }
+    let places = facades.of(triangle, model.corners(tile, triangle))?;
+    let corners = corners_of(model, tile, triangle);
+    let mut corner = |k: usize| {
+        let surface = table.number(corners[0].surface, corners[k].normal, false);
+        (CityVertex::new(tile.origin, surface, corners[k].position, corners[k].normal), places[k])
+    };
+    Some((Group { images: Some(Images::FACADE), ..group }, [0, 1, 2].map(&mut corner)))
+}
+
+/// The corners of a model triangle that has texture coordinates; `triangle` counts from the model's first.
+fn textured_corners(model: &CityModel, tile: &Tile, triangle: u32, table: &mut SurfaceTable) -> TexturedCorners {
     let corners = corners_of(model, tile, triangle);
     [0, 1, 2].map(|k| {
         let vertex = corners[k];
@@ -621,7 +661,7 @@ fn gather_blocks(
     tiles.retain(|(cell, _)| *cell != NO_CELL);
     tiles.sort_unstable();
     let all: Vec<u32> = (0..model.geometries.len() as u32).collect();
-    let shown = Shown { model, geometries: &all, coplanar: &[], ground: None, is_lit_as_before: false };
+    let shown = Shown { model, geometries: &all, coplanar: &[], ground: None, is_lit_as_before: false, facades: false };
     let shells = closed_shells(&shown, tiles.iter().map(|(_, tile)| *tile), middle);
     let textures = Textures::none();
     let mut table = SurfaceTable::new(model, &textures, &shells);
@@ -672,6 +712,19 @@ struct Layer {
 }
 
 impl Layer {
+    /// Its section, its triangles and its vertices.
+    fn upload(&self, gpu: &Gpu) -> Result<Option<(Section, usize, usize)>, GpuError> {
+        let Self { gathered, planes, .. } = self;
+        let kind = SectionKind::Coplanar(gathered.group.images);
+        if kind.images().is_none() {
+            return upload(gpu, kind, gathered, Extra { name: "planes", each: planes });
+        }
+        let both = planes.iter().zip(&gathered.texcoords);
+        let both = both.map(|(&plane, &texcoord)| layout::TexturedPlane { plane, texcoord });
+        let each: Vec<layout::TexturedPlane> = both.collect();
+        upload(gpu, kind, gathered, Extra { name: "planes and texture coordinates", each: &each })
+    }
+
     fn new(kind: WeldKind, group: Group) -> Self {
         let gathered = Gathered::new(kind, group);
         Self { gathered, planes: Vec::new(), owners: Vec::new(), numbers: FxHashMap::default() }
@@ -716,7 +769,13 @@ impl Layer {
 }
 
 /// The overlapping triangles of all shared planes, lowest layer first; of each layer, one per group.
-fn gather_layers(shown: &Shown, tiles: &[(u32, u32)], table: &mut SurfaceTable, kind: WeldKind) -> Vec<Vec<Layer>> {
+fn gather_layers(
+    shown: &Shown,
+    tiles: &[(u32, u32)],
+    facades: &Facades,
+    table: &mut SurfaceTable,
+    kind: WeldKind,
+) -> Vec<Vec<Layer>> {
     let model = shown.model;
     let mut of_tile: FxHashMap<u32, Vec<&CoplanarTriangle>> = FxHashMap::default();
     for c in shown.coplanar {
@@ -736,12 +795,16 @@ fn gather_layers(shown: &Shown, tiles: &[(u32, u32)], table: &mut SurfaceTable, 
             let plane = *planes.entry(c.group).or_insert_with(|| plane_of(equation, tile.origin));
             let surface = corners[0].surface;
             let group = table.group(surface, tile.texcoords != NONE);
+            let facade = facade_corners(model, tile, c.triangle, group, facades, table);
+            let group = facade.as_ref().map_or(group, |(group, _)| *group);
             let layer = layers[c.layer as usize].entry(group).or_insert_with(|| {
                 let mut layer = Layer::new(kind, group);
                 layer.begin_tile(tile.origin);
                 layer
             });
-            if group.images.is_some() {
+            if let Some((_, corners)) = facade {
+                layer.textured(plane, corners);
+            } else if group.images.is_some() {
                 layer.textured(plane, textured_corners(model, tile, c.triangle, table));
             } else {
                 let number = table.number(surface, corners[0].normal, false);

@@ -85,6 +85,11 @@ impl CityFacts<'_> {
         self.sections.iter().any(|s| s.kind.images().is_some())
     }
 
+    /// Whether some walls have storeys and windows.
+    pub fn has_facades(&self) -> bool {
+        self.sections.iter().any(|s| s.kind.images().is_some_and(|images| images.facade))
+    }
+
     /// Whether the material of something is translucent, in view or not.
     pub fn has_clear_materials(&self) -> bool {
         let own = self.chunks.iter().copied().flatten();

@@ -136,9 +136,20 @@ fn uniform(placement: &Placement, eye: DVec3, number: u32, first_surface: u32) -
     }
 }
 
+/// How contents look beside what they are.
+#[derive(Clone, Copy)]
+pub(super) struct ContentLook<'a> {
+    /// The plain ground of the scene's city.
+    pub ground: Option<&'a Ground>,
+    /// Whether something draws lines.
+    pub edges: bool,
+    /// Whether walls have storeys and windows.
+    pub facades: bool,
+}
+
 impl Contents {
-    /// Makes the GPU hold these contents beside the scene's `own` city, whose plain ground is `ground`, and no others; with their
-    /// edges where something draws lines. Between frames with the same contents nothing is made. Whether the table of surfaces is another
+    /// Makes the GPU hold these contents beside the scene's `own` city, and no others; with their
+    /// edges where something draws lines, and facades. Between frames with the same contents nothing is made. Whether the table of surfaces is another
     /// one now.
     pub fn set(
         &mut self,
@@ -146,19 +157,25 @@ impl Contents {
         pipelines: &Pipelines,
         own: &CityOnGpu,
         wanted: &[WantedContent],
-        ground: Option<&Ground>,
-        edges: bool,
+        how: ContentLook,
     ) -> Result<bool, GpuError> {
         if wanted.is_empty() && self.shown.is_empty() {
             return Ok(false);
         }
+        let ContentLook { ground, edges, facades } = how;
         self.cities.retain(|(id, _)| wanted.iter().any(|w| w.id() == *id));
+        if self.cities.iter().any(|(_, city)| city.buffers.has_facades != facades) {
+            // The table of surfaces is another one then, too.
+            self.cities.clear();
+            self.parts.clear();
+        }
         for city in wanted.iter().filter_map(|w| w.city.as_ref()) {
             let plain = Shown {
                 model: &city.model,
                 geometries: &city.geometries,
                 coplanar: &[],
                 is_lit_as_before: city.is_lit_as_before,
+                facades,
                 ground: if city.is_own && !city.is_derived() { ground } else { city.ground.as_ref() },
             };
             if !self.cities.iter().any(|(id, _)| *id == city.id) {

@@ -19,6 +19,11 @@ impl PictureTile {
         Self { origin: [0, 0], size }
     }
 
+    /// Where it ends along an axis.
+    pub fn end(&self, axis: usize) -> u32 {
+        self.origin[axis] + self.size[axis]
+    }
+
     /// Whether it holds no pixel.
     pub fn is_empty(&self) -> bool {
         self.size.contains(&0)

@@ -13,6 +13,7 @@ use crate::{
     gpu::Gpu,
     render::{
         furniture::Furniture,
+        parts::Part,
         resource::{
             bindings::{GroupLayout, SAMPLED, SAMPLER, group},
             formats::PICTURE,
@@ -58,6 +59,17 @@ struct Image {
     view: wgpu::TextureView,
 }
 
+/// An image that is drawn part by part.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Whole {
+    /// Its number.
+    pub number: u64,
+    /// Its width and height, pixels.
+    pub size: [u32; 2],
+    /// Whether it has no transparent pixels.
+    pub is_opaque: bool,
+}
+
 impl Images {
     /// None.
     pub fn new(gpu: &Gpu) -> Self {
@@ -98,6 +110,18 @@ impl Images {
         let texture = self.fitted(gpu, number, size, is_opaque);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         encoder.copy_texture_to_texture(picture.as_image_copy(), texture.as_image_copy(), picture.size());
+        gpu.queue.submit([encoder.finish()]);
+        self.white(gpu);
+    }
+
+    /// Keeps what a target shows of a part of an image.
+    pub(super) fn copy_part(&mut self, gpu: &Gpu, image: Whole, picture: &wgpu::Texture, part: Part) {
+        let texture = self.fitted(gpu, image.number, image.size, image.is_opaque);
+        let from: [u32; 2] = std::array::from_fn(|i| part.kept.origin[i] - part.drawn.origin[i]);
+        let [width, height] = part.kept.size;
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        encoder.copy_texture_to_texture(place_in(picture, from), place_in(&texture, part.kept.origin), size);
         gpu.queue.submit([encoder.finish()]);
         self.white(gpu);
     }
@@ -175,6 +199,11 @@ impl Images {
         let entries = [(0, R::TextureView(image)), (1, R::TextureView(mask)), (2, R::Sampler(&self.sampler))];
         Some(group(gpu, "image over the picture", &pipelines.layout(&FURNITURE_PICTURE), &entries))
     }
+}
+
+/// A place in a texture, pixels from its top left.
+fn place_in(texture: &wgpu::Texture, [x, y]: [u32; 2]) -> wgpu::TexelCopyTextureInfo<'_> {
+    wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x, y, z: 0 }, ..texture.as_image_copy() }
 }
 
 /// An image that fills `size`, its middle where its shape is another; from the level that is just finer.

@@ -6,8 +6,10 @@
 use crate::{
     render::{
         furniture::Furniture,
+        images::Whole as Image,
         occlusion::Occlusion,
         picture::{RenderError, Request, Studio},
+        renderer::Renderer,
         stats::Pass,
         view_state::ViewState,
     },
@@ -95,16 +97,14 @@ impl Studio {
         inset.of = None;
         std::mem::swap(&mut inset.state, &mut self.renderer.view);
         std::mem::swap(&mut inset.occlusion, &mut self.known().occlusion);
-        let drawn = self.draw_with(scene, request, furniture, Some(most), None).and_then(|passes| {
-            // Lists that were too short are long enough the second time.
-            let grows = self.renderer.makes_room()? | self.renderer.sorts_longer()?;
-            if grows { self.draw_with(scene, request, furniture, Some(most), None) } else { Ok(passes) }
+        let whole = Image { number, size: request.size, is_opaque: !request.transparent };
+        let drawn = self.draw_parts(scene, request, furniture, Some(most), &mut |renderer, part| {
+            let Renderer { gpu, images, view, .. } = renderer;
+            if let Some(targets) = &view.targets {
+                images.copy_part(gpu, whole, &targets.picture.texture, part);
+            }
         });
-        if drawn.is_ok()
-            && let Some(targets) = &self.renderer.view.targets
-        {
-            let is_opaque = !request.transparent;
-            self.renderer.images.copy(&self.renderer.gpu, number, &targets.picture.texture, is_opaque);
+        if drawn.is_ok() {
             inset.of = Some(Shown { scene: scene.clone(), request: *request, furniture: furniture.clone() });
         }
         std::mem::swap(&mut inset.state, &mut self.renderer.view);

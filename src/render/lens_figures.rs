@@ -38,7 +38,7 @@ pub(super) fn handlers_that_ran(planned: &[u32], operations: &Operations, pictur
         let is_soft = operations.borders.iter().any(|(of, _)| *of == lens);
         let kind = handlers()[operation.effect as usize].kind;
         let asks_all = is_soft || kind.decides_visibility() || kind == EffectKind::Opacity || on_lines(kind);
-        asks_all || picture.class_at(lens as usize).any(|class| class == operation.class)
+        asks_all || picture.class_counts[lens as usize].of(operation.class) > 0
     };
     let is_used = |effect: u32| operations.list.iter().any(|o| o.effect == effect && has_ran(o));
     // What no lens or style names is the program's own.
@@ -55,16 +55,9 @@ pub(super) fn lens_figures(of: FiguresOf, picture: &Picture, index: usize) -> st
     let lens = &scene.lenses[index];
     let whole = drawn.whole(index as u32);
     let volumes: Vec<&LensVolume> = volumes.iter().filter(|v| v.lens == whole).collect();
-    let (mut front, mut inside, mut behind, mut rest) = (0, 0, 0, 0);
-    for class in picture.class_at(index) {
-        match class {
-            Class::Inside => inside += 1,
-            Class::Front => front += 1,
-            Class::Behind => behind += 1,
-            Class::Rest => rest += 1,
-        }
-    }
-    let of_class = [(Class::Inside, inside), (Class::Front, front), (Class::Behind, behind), (Class::Rest, rest)];
+    let of_class =
+        [Class::Inside, Class::Front, Class::Behind, Class::Rest].map(|c| (c, picture.class_counts[index].of(c)));
+    let [inside, front, behind, rest] = of_class.map(|(_, count)| count);
     let acts_on = |class: Class| !volumes.is_empty() && lens.classes().any(|own| own == class);
     stats::LensFigures {
         id: index as u32,
@@ -97,20 +90,6 @@ pub(super) fn lens_figures(of: FiguresOf, picture: &Picture, index: usize) -> st
 }
 
 impl Picture {
-    /// The class of what each pixel shows with regard to a lens, as it was written down.
-    fn class_at(&self, lens: usize) -> impl Iterator<Item = Class> {
-        let planes = &self.classes[3 * (lens / 32)..3 * (lens / 32) + 3];
-        (0..planes[0].len()).map(move |i| {
-            let [inside, front, behind] = [0, 1, 2].map(|plane: usize| planes[plane][i] >> (lens % 32) & 1 == 1);
-            match (inside, front, behind) {
-                (true, ..) => Class::Inside,
-                (_, true, false) => Class::Front,
-                (_, false, true) => Class::Behind,
-                _ => Class::Rest,
-            }
-        })
-    }
-
     /// Makes what was noted of the lenses that were drawn that of the scene's lenses.
     pub(super) fn fold(&mut self, drawn: &Drawn, lens_count: usize) {
         if drawn.owners.is_none() {
@@ -121,18 +100,8 @@ impl Picture {
             let of_drawn = std::mem::take(counts);
             of_drawn.into_iter().for_each(|(lens, count)| *counts.entry(drawn.owner(lens)).or_default() += count);
         }
-        let words = drawn.scene.lenses.len().max(1).div_ceil(32);
-        let per_word = self.classes.len() / words;
-        let of_drawn = std::mem::take(&mut self.classes);
-        let pixels = of_drawn.first().map_or(0, Vec::len);
-        self.classes = vec![vec![0; pixels]; lens_count.div_ceil(32) * per_word];
-        for lens in 0..lens_count {
-            let whole = drawn.whole(lens as u32) as usize;
-            for class in 0..per_word {
-                let from = &of_drawn[whole / 32 * per_word + class];
-                let to = &mut self.classes[lens / 32 * per_word + class];
-                to.iter_mut().zip(from).for_each(|(to, from)| *to |= (from >> (whole % 32) & 1) << (lens % 32));
-            }
-        }
+        let of_drawn = std::mem::take(&mut self.class_counts);
+        let own = |lens: usize| of_drawn.get(drawn.whole(lens as u32) as usize).copied();
+        self.class_counts = (0..lens_count).filter_map(own).collect();
     }
 }

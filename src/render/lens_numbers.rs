@@ -70,31 +70,23 @@ impl LensNumbers {
             None => self.places.push(nowhere),
             Some((sprite, Kept::Page(on))) => {
                 self.sides.push(region);
-                self.places.push(place_on_page(input, volume, sprite, *on));
+                self.places.push(place_on_page(volume, sprite, *on));
             }
             Some((_, Kept::Stored(_))) => {
                 let Some(request) = requests.next() else { return };
                 self.baked.push(region);
-                self.places.push(request.place(volume, input.tile));
+                self.places.push(request.place(volume));
             }
         }
     }
 }
 
-/// Texels of a sprite per pixel of the picture, and from its own texels to those of its page.
-pub(super) fn scale_and_shift(input: &FrameInput, sprite: &SeenSprite, on: Place) -> [[f32; 2]; 2] {
-    [
-        std::array::from_fn(|i| sprite.size[i] as f32 / input.tile.size[i] as f32),
-        std::array::from_fn(|i| on.origin[i] as f32 - sprite.bounds.origin[i] as f32),
-    ]
-}
-
-fn place_on_page(input: &FrameInput, volume: &SeenVolume, sprite: &SeenSprite, on: Place) -> layout::SpritePlace {
-    let [scale, shift] = scale_and_shift(input, sprite, on);
+fn place_on_page(volume: &SeenVolume, sprite: &SeenSprite, on: Place) -> layout::SpritePlace {
+    let shift = std::array::from_fn(|i| on.origin[i] as f32 - sprite.bounds.origin[i] as f32);
     layout::SpritePlace {
         origin: volume.bounds.origin.map(|o| o as i32),
         size: volume.bounds.size.map(|s| s as i32),
-        texels_per_pixel: scale,
+        texels_per_pixel: sprite.grid.texels_per_pixel(),
         sprite: shift,
         page: on.page,
         ..bytemuck::Zeroable::zeroed()

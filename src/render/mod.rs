@@ -5,6 +5,7 @@
 //! This room knows no files and no commands.
 
 mod bake;
+pub mod bands;
 mod bare;
 mod best_views;
 mod cells;
@@ -27,6 +28,7 @@ pub mod edges;
 mod empty_lenses;
 mod enclosed;
 pub mod eye;
+mod facades;
 mod flat;
 pub mod footprints;
 pub mod frame;
@@ -67,6 +69,7 @@ mod programs;
 mod refinery;
 mod regions;
 pub mod renderer;
+pub mod request;
 mod resolve;
 pub mod resource;
 mod saved_sprites;
@@ -79,6 +82,7 @@ mod shells;
 mod sights;
 pub mod silhouettes;
 pub mod solids;
+mod sprite_grid;
 mod sprites;
 pub mod standing;
 pub mod stats;

@@ -341,6 +341,17 @@ impl Operations {
         filters
     }
 
+    /// How many uses of filters there are.
+    pub fn filter_count(&self) -> u64 {
+        self.list.iter().filter(|operation| operation.is_filter()).count() as u64
+    }
+
+    /// How far filters look at most, one after the other, pixels.
+    pub fn reach(&self) -> u32 {
+        let filters = self.list.iter().filter(|operation| operation.is_filter());
+        filters.map(|filter| self.parameters[filter.parameters as usize][0].ceil() as u32).sum()
+    }
+
     /// Marks objects for a lens test by object, of `count` in all, or notes their thresholds; where that begins.
     pub fn add_members(&mut self, members: &Members, count: usize) -> u32 {
         let first = self.object_values.len();

@@ -17,6 +17,7 @@ use crate::{
         frame::FrameInput,
         layout,
         solids::SolidTable,
+        sprite_grid::SpriteGrid,
         stored::{KeptSprite, SpriteRoom, Stored, code_of},
         volume::LensVolume,
     },
@@ -278,8 +279,8 @@ impl OwnSprites {
                 stored.first_list = u32::try_from(lists).unwrap_or(u32::MAX);
                 lists += u64::from(stored.width(one.bounds.size[0])) * u64::from(one.bounds.size[1]);
             }
-            let (size, bounds) = (one.space.size, one.bounds);
-            all.push(BakeRequest { lens: one.lens, region, size, bounds, stored, own: Some(shapes.view) });
+            let (grid, bounds) = (SpriteGrid::own(one.space.size), one.bounds);
+            all.push(BakeRequest { lens: one.lens, region, grid, bounds, stored, own: Some(shapes.view) });
         }
         all
     }

@@ -10,7 +10,7 @@ use crate::{
         furniture::{Furniture, Piece},
         furniture_on_gpu::{FurnitureKey, FurnitureOnGpu, Over},
         images::Of,
-        parts::{parts, put},
+        parts::put,
         renderer::Renderer,
         resource::{formats::PICTURE, key::Key, recording::cleared},
         text::TextLine,
@@ -27,6 +27,9 @@ pub struct BoardApart {
     /// Its text, in pixels of the image.
     pub texts: Vec<TextLine>,
 }
+
+/// Bytes of a pixel of a page.
+const PAGE_BYTES: u64 = 8;
 
 impl Renderer {
     /// A page of `size` pixels, sRGB and opaque, row 0 at the top.
@@ -61,11 +64,11 @@ impl Renderer {
     fn on(&mut self, size: [u32; 2], ground: wgpu::Color, furniture: &Furniture) -> Result<Vec<[u8; 4]>, GpuError> {
         let mut rgba = vec![[0; 4]; size[0] as usize * size[1] as usize];
         let mut on_gpu = FurnitureOnGpu::new(&self.gpu)?;
-        for part in parts(size) {
+        for part in self.tiling(PAGE_BYTES, 0).rows(size).into_iter().flatten() {
             let over = Over { whole: size, tile: part.drawn, layered: false };
             let target = self.furniture_on(&mut on_gpu, furniture, over, ground)?;
             let texels = self.gpu.read_texture(&target, 0, wgpu::TextureAspect::All)?;
-            put(&mut rgba, size, part, bytemuck::cast_slice::<u8, [u8; 4]>(&texels));
+            put(&mut rgba, [size[0], 0], part, bytemuck::cast_slice::<u8, [u8; 4]>(&texels));
         }
         Ok(rgba)
     }

@@ -3,6 +3,7 @@
 use std::{
     borrow::Cow,
     collections::{BTreeMap, BTreeSet},
+    error::Error,
     sync::{
         Arc, Mutex, MutexGuard, OnceLock, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -14,7 +15,6 @@ use crate::{
     city::{
         CityModel, Lod, ObjectClass,
         coplanar::coplanar_triangles,
-        decode_normal,
         derived::{Derive, Form, derive},
         ground::{Ground, plain_ground},
         load::LoadOptions,
@@ -26,6 +26,7 @@ use crate::{
     gpu::{Gpu, GpuError, Timer},
     lens::solids::ShownCity,
     render::{
+        bands::{Band, ClassCounts, DrawnBand},
         best_views::KnownViews,
         city::Shown,
         deformed::DeformedFigures,
@@ -38,7 +39,7 @@ use crate::{
         layers::{LayerFigures, MethodFigures},
         lens_figures::{FiguresOf, handlers_that_ran, lens_figures},
         moved::Moved,
-        parts::{Part, parts, put, whole},
+        parts::{Part, Tiling, whole},
         pass::masks::CLEAR_MASKS,
         renderer::Renderer,
         resolve::{Known, ResolveError, Resolved, Surroundings},
@@ -52,8 +53,14 @@ use crate::{
     view::{Camera, CameraError, View, first_view},
 };
 
+pub use crate::render::request::{Aovs, Request};
+
 /// How thick the air is: the share of the horizon's colour that a scene's radius of it adds.
 const HAZE: f64 = 0.035;
+
+/// What the targets of a picture take for each pixel, bytes, and what a filter adds, and what it starts from.
+const PIXEL_BYTES: u64 = 48;
+const FILTER_BYTES: u64 = 16;
 
 /// What can go wrong while drawing.
 #[derive(Debug, thiserror::Error)]
@@ -70,6 +77,9 @@ pub enum RenderError {
     /// [`Studio::interrupt`] said so.
     #[error("interrupted")]
     Interrupted,
+    /// Who takes the bands of a picture could not.
+    #[error("{0}")]
+    Taken(Box<dyn Error + Send + Sync>),
 }
 
 impl From<ResolveError> for RenderError {
@@ -81,53 +91,8 @@ impl From<ResolveError> for RenderError {
     }
 }
 
-/// Which AOVs a picture brings along; all of the unjittered sample at the pixel's centre.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Aovs {
-    /// Metres along the view axis.
-    pub depth: bool,
-    /// Object index + 1.
-    pub object_id: bool,
-    /// Unit normals.
-    pub normal: bool,
-    /// Lens membership.
-    pub lens_mask: bool,
-}
-
-/// What is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Request {
-    /// Width, height, pixels.
-    pub size: [u32; 2],
-    /// Samples per pixel, at least 1.
-    pub samples: u32,
-    /// Nothing behind the city.
-    pub transparent: bool,
-    /// AOVs.
-    pub aovs: Aovs,
-    /// Whether passes are timed and lenses counted.
-    pub statistics: bool,
-    /// How shaders are made.
-    pub backend: Backend,
-    /// Whether a picture of one sample tells by itself how the city hides the sky, where the sun has ambient occlusion: as the window does until the
-    /// samples are there.
-    pub screen_occlusion: bool,
-}
-
-impl Request {
-    /// One sample of a picture of this size, and nothing beside it.
-    pub fn plain(size: [u32; 2]) -> Self {
-        Self {
-            size,
-            samples: 1,
-            transparent: false,
-            aovs: Aovs::default(),
-            statistics: false,
-            backend: Backend::default(),
-            screen_occlusion: false,
-        }
-    }
-}
+/// Takes the bands of a picture, from the top.
+pub type TakeBand<'a> = dyn FnMut(Band) -> Result<(), Box<dyn Error + Send + Sync>> + 'a;
 
 /// An overlay as it lies over a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,8 +122,8 @@ pub struct Picture {
     pub normal: Option<Vec<[f32; 3]>>,
     /// One bit per lens, 32 lenses per plane.
     pub lens_mask: Option<Vec<Vec<u32>>>,
-    /// Class bits as the GPU holds them: planes 3w inside, 3w + 1 in front, 3w + 2 behind.
-    pub(super) classes: Vec<Vec<u32>>,
+    /// How many pixels show each class of each lens that was drawn, where that is counted.
+    pub(super) class_counts: Vec<ClassCounts>,
     /// Rays that have more intervals than the sprite of their lens has layers, by lens.
     pub(super) excess: BTreeMap<u32, u32>,
     /// Objects by lens that have no section since they are open.
@@ -237,6 +202,7 @@ impl Studio {
             coplanar: &coplanar,
             ground: ground.as_deref(),
             is_lit_as_before: false,
+            facades: false,
         };
         renderer.set_city(&shown, None)?;
         let mut objects: Vec<u32> = geometries.iter().map(|&g| model.geometries[g as usize].object).collect();
@@ -353,15 +319,44 @@ impl Studio {
         request: &Request,
         furniture: &Furniture,
     ) -> Result<Picture, RenderError> {
+        let mut bands = Band::default();
+        let picture = self.render_in_bands(scene, request, furniture, &mut |band| {
+            bands.append(band);
+            Ok(())
+        })?;
+        Ok(picture.with(bands))
+    }
+
+    /// The same, band by band from the top: `take` gets the pixels, and the picture that is answered has all but these. What is held at a time is one
+    /// band: the height of a tile, where the picture is drawn in tiles ([`crate::render::settings::Settings::tile`]).
+    ///
+    /// # Errors
+    /// Those of a picture; [`RenderError::Taken`] where `take` fails.
+    pub fn render_in_bands(
+        &mut self,
+        scene: &Scene,
+        request: &Request,
+        furniture: &Furniture,
+        take: &mut TakeBand,
+    ) -> Result<Picture, RenderError> {
         let started = Instant::now();
         let drawn = scene.drawn();
         let resolved = self.resolve(&drawn, request.size, request.samples)?;
-        let mut picture = Picture::empty(request, drawn.scene.lenses.len());
+        let drawn_lenses = drawn.scene.lenses.len();
+        let mut picture = Picture::empty(request, drawn_lenses);
         let mut passes: Vec<stats::Pass> = Vec::new();
         self.renderer.begin_picture();
-        self.find_cities(&resolved)?;
-        for part in parts(request.size) {
-            self.render_part(&drawn, request, &resolved, part, furniture, &mut picture, &mut passes)?;
+        self.find_cities(&resolved, drawn.scene.style.facades)?;
+        for row in self.tiling(request, &resolved).rows(request.size) {
+            let Some(first) = row.first() else { continue };
+            let size = [request.size[0], first.kept.size[1]];
+            let mut band = DrawnBand::new(request, first.kept.origin[1], size, drawn_lenses);
+            for part in row {
+                let input = FrameInput { furniture, ..input(&drawn.scene, request, &resolved, part.drawn) };
+                self.render_part(&drawn, request, input, part, &mut band, &mut picture, &mut passes)?;
+            }
+            band.count(&mut picture.class_counts);
+            take(band.finished(request, &drawn, scene.lenses.len())).map_err(RenderError::Taken)?;
         }
         picture.open = diagnostics::open_shells(self, &resolved);
         picture.not_derived = diagnostics::not_derived(&resolved.contents);
@@ -381,9 +376,6 @@ impl Studio {
             let seen = visible_share::of_lenses(self, scene, request.size)?;
             picture.statistics.lenses.iter_mut().zip(seen).for_each(|(lens, seen)| lens.seen = seen);
         }
-        let per_word = if request.statistics { 3 } else { 1 };
-        let inside = std::mem::take(&mut picture.classes).into_iter().step_by(per_word);
-        picture.lens_mask = request.aovs.lens_mask.then(|| inside.collect());
         Ok(picture)
     }
 
@@ -395,7 +387,7 @@ impl Studio {
     /// The same with `furniture` over it. As long as that stays equal, nothing is set, allocated or uploaded again.
     pub fn redraw_with(&mut self, scene: &Scene, size: [u32; 2], furniture: &Furniture) -> Result<(), RenderError> {
         let request = Request { backend: self.backend, ..Request::plain(size) };
-        self.draw_with(scene, &request, furniture, None, None).map(|_| ())
+        self.draw_with(scene, &request, furniture, None).map(|_| ())
     }
 
     /// Draws a scene again as [`Self::redraw`] does, to its end; milliseconds by the GPU's clock, where it has one.
@@ -405,29 +397,58 @@ impl Studio {
     pub fn redraw_timed(&mut self, scene: &Scene, size: [u32; 2]) -> Result<Option<f64>, RenderError> {
         let request = Request { backend: self.backend, ..Request::plain(size) };
         let mut timer = Timer::new(&self.renderer.gpu)?;
-        self.draw_with(scene, &request, &furniture::NONE, None, Some(&mut timer))?;
+        self.draw_with(scene, &request, &furniture::NONE, Some(&mut timer))?;
         Ok(timer.read(&self.renderer.gpu)?.iter().map(|pass| pass.gpu_ms).sum())
     }
 
     /// Draws all samples of a picture that fits one target, without reading anything back.
     pub fn draw(&mut self, scene: &Scene, request: &Request) -> Result<(), RenderError> {
-        self.draw_with(scene, request, &furniture::NONE, None, None).map(|_| ())
+        self.draw_with(scene, request, &furniture::NONE, None).map(|_| ())
     }
 
-    /// The passes that ran, of all samples; `timer` measures those of the first.
-    pub(super) fn draw_with(
+    /// Draws all samples of a picture, part by part where it is large, and gives `after` the renderer after each; the passes that ran.
+    pub(super) fn draw_parts(
         &mut self,
         scene: &Scene,
         request: &Request,
         furniture: &Furniture,
         most_triangles: Option<u64>,
+        after: &mut dyn FnMut(&mut Renderer, Part),
+    ) -> Result<Vec<stats::Pass>, RenderError> {
+        let drawn = scene.drawn();
+        let resolved = self.resolve(&drawn, request.size, request.samples)?;
+        self.find_cities(&resolved, drawn.scene.style.facades)?;
+        let mut passes = Vec::new();
+        for part in self.tiling(request, &resolved).rows(request.size).into_iter().flatten() {
+            let input = input(&drawn.scene, request, &resolved, part.drawn);
+            let mut input = FrameInput { furniture, most_triangles, ..input };
+            for sample in 0..input.samples {
+                input.sample = sample;
+                let mut records = self.renderer.draw(&input, None)?;
+                // Lists that were too short are long enough the second time.
+                if sample == 0 && (self.renderer.makes_room()? | self.renderer.sorts_longer()?) {
+                    records = self.renderer.draw(&input, None)?;
+                }
+                collect(&mut passes, &records, &[], &drawn);
+            }
+            after(&mut self.renderer, part);
+        }
+        Ok(passes)
+    }
+
+    /// The passes that ran, of all samples; `timer` measures those of the first.
+    fn draw_with(
+        &mut self,
+        scene: &Scene,
+        request: &Request,
+        furniture: &Furniture,
         mut timer: Option<&mut Timer>,
     ) -> Result<Vec<stats::Pass>, RenderError> {
         let drawn = scene.drawn();
         let resolved = self.resolve(&drawn, request.size, request.samples)?;
         let whole = PictureTile::whole(request.size);
-        self.find_cities(&resolved)?;
-        let mut input = FrameInput { furniture, most_triangles, ..input(&drawn.scene, request, &resolved, whole) };
+        self.find_cities(&resolved, drawn.scene.style.facades)?;
+        let mut input = FrameInput { furniture, ..input(&drawn.scene, request, &resolved, whole) };
         let mut passes = Vec::new();
         for sample in 0..input.samples {
             input.sample = sample;
@@ -447,35 +468,42 @@ impl Studio {
         Ok(self.renderer.read_sprites(drawn.whole(lens as u32))?)
     }
 
-    /// Puts contents of lenses on the GPU, and edges the first time that something draws lines.
-    fn find_cities(&mut self, resolved: &Resolved) -> Result<(), RenderError> {
+    /// Puts the city on the GPU anew, with block models or without.
+    fn set_city(&mut self, facades: bool, blocks: bool) -> Result<(), RenderError> {
+        let derived = || derive(&self.model, &self.geometries, &Derive { form: Form::Lod1, parts: true });
+        let blocks = blocks.then(derived);
+        let coplanar = coplanar_triangles(&self.model, &self.geometries);
+        let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_deref());
+        let shown = Shown { model, geometries, coplanar: &coplanar, ground, is_lit_as_before: false, facades };
+        self.renderer.set_city(&shown, blocks.as_ref().map(|blocks| &blocks.model))?;
+        self.insets.clear();
+        Ok(())
+    }
+
+    /// Puts contents of lenses on the GPU, edges the first time that something draws lines, and storeys and windows on walls where these are
+    /// wanted.
+    fn find_cities(&mut self, resolved: &Resolved, facades: bool) -> Result<(), RenderError> {
         let edges = resolved.operations.draws_lines();
-        self.renderer.set_contents(&resolved.contents.wanted, self.ground.as_deref(), edges)?;
+        let stale = self.renderer.city().filter(|city| city.has_facades != facades).map(|city| city.has_blocks);
+        if let Some(has_blocks) = stale {
+            self.set_city(facades, has_blocks)?;
+        }
+        self.renderer.set_contents(&resolved.contents.wanted, self.ground.as_deref(), edges, facades)?;
         if self.renderer.has_edges() || !edges {
             return Ok(());
         }
         let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_deref());
-        Ok(self.renderer.set_edges(&Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false })?)
+        let shown = Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false, facades };
+        Ok(self.renderer.set_edges(&shown)?)
     }
 
     /// Makes block models of all objects, once, for views that may show no more triangles than `most`, where
     /// the city has more. All insets are drawn again.
     pub(super) fn find_blocks(&mut self, most: u64) -> Result<(), RenderError> {
-        if self.renderer.city().is_none_or(|city| city.has_blocks || city.triangles <= most) {
-            return Ok(());
-        }
+        let large = self.renderer.city().filter(|city| !city.has_blocks && city.triangles > most);
+        let Some(facades) = large.map(|city| city.has_facades) else { return Ok(()) };
         let started = Instant::now();
-        let blocks = derive(&self.model, &self.geometries, &Derive { form: Form::Lod1, parts: true });
-        let coplanar = coplanar_triangles(&self.model, &self.geometries);
-        let shown = Shown {
-            model: &self.model,
-            geometries: &self.geometries,
-            coplanar: &coplanar,
-            ground: self.ground.as_deref(),
-            is_lit_as_before: false,
-        };
-        self.renderer.set_city(&shown, Some(&blocks.model))?;
-        self.insets.clear();
+        self.set_city(facades, true)?;
         log::info!("block models of {} objects in {:.0} ms", self.objects, started.elapsed().as_secs_f64() * 1e3);
         Ok(())
     }
@@ -509,6 +537,25 @@ impl Studio {
     /// What stays from scene to scene.
     pub(super) fn known(&self) -> MutexGuard<'_, Known> {
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// How a picture is cut.
+    fn tiling(&self, request: &Request, resolved: &Resolved) -> Tiling {
+        let masks = request.statistics || request.aovs.lens_mask;
+        let words = resolved.volumes.iter().map(|volume| 1 + u64::from(volume.lens) / 32).max().unwrap_or(0);
+        let longest = f64::from(request.size[0].max(request.size[1]));
+        let of_sprite = |volume: &LensVolume| {
+            let sprite = volume.sprite.filter(|sprite| sprite.own.is_none())?;
+            let share = sprite.resolution.map_or(1.0, |side| f64::from(side) / longest);
+            let layers = if sprite.aggregate { 1 } else { sprite.layers };
+            Some((f64::from(layers * sprite.format.bits()) / 4.0 * share * share) as u64)
+        };
+        let bytes = PIXEL_BYTES
+            + if request.samples > 1 { 16 } else { 0 }
+            + if masks { 3 * 4 * words } else { 0 }
+            + resolved.operations.filter_count() * FILTER_BYTES
+            + resolved.volumes.iter().filter_map(of_sprite).sum::<u64>();
+        self.renderer.tiling(bytes, resolved.operations.reach())
     }
 
     /// What a scene is in a picture of this size and so many samples.
@@ -565,13 +612,12 @@ impl Studio {
         &mut self,
         drawn: &Drawn,
         request: &Request,
-        resolved: &Resolved,
+        mut input: FrameInput,
         part: Part,
-        furniture: &Furniture,
+        band: &mut DrawnBand,
         picture: &mut Picture,
         passes: &mut Vec<stats::Pass>,
     ) -> Result<(), RenderError> {
-        let mut input = FrameInput { furniture, ..input(&drawn.scene, request, resolved, part.drawn) };
         for sample in 0..input.samples {
             if sample > 0 && self.interrupt.load(Ordering::Relaxed) {
                 return Err(RenderError::Interrupted);
@@ -594,11 +640,11 @@ impl Studio {
             picture.made.0 += self.renderer.gpu.allocations() - before.0;
             picture.made.1 += self.renderer.gpu.uploads() - before.1;
             if sample == 0 {
-                self.read_aovs(request, &resolved.view, part, picture)?;
+                band.read_aovs(&self.renderer, &input.view, part)?;
                 if records.iter().any(|r| r.name == CLEAR_MASKS) {
-                    self.read_masks(drawn.scene.lenses.len(), part, picture)?;
+                    band.read_masks(&self.renderer, drawn.scene.lenses.len(), part)?;
                 }
-                for (lens, rays) in self.renderer.read_excess(part.drawn.origin == [0, 0])? {
+                for (lens, rays) in self.renderer.read_excess(part.kept.origin == [0, 0])? {
                     *picture.excess.entry(lens).or_default() += rays;
                 }
             }
@@ -607,78 +653,7 @@ impl Studio {
                 collect(passes, &records, &measures, drawn);
             }
         }
-        let Some(targets) = self.renderer.targets() else { return Ok(()) };
-        let rgba = self.renderer.gpu.read_texture(&targets.picture.texture, 0, wgpu::TextureAspect::All)?;
-        put(&mut picture.rgba, request.size, part, bytemuck::cast_slice::<u8, [u8; 4]>(&rgba));
-        Ok(())
-    }
-
-    /// Reads what the unjittered sample left in the targets.
-    fn read_aovs(&self, request: &Request, view: &View, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
-        let gpu = &self.renderer.gpu;
-        let Some(targets) = self.renderer.targets() else { return Ok(()) };
-        let surface = |number: u32| self.renderer.surface(number);
-        if let Some(out) = &mut picture.depth {
-            let stored = gpu.read_texture(&targets.own_depth.texture, 0, wgpu::TextureAspect::All)?;
-            let near = view.camera.near_m as f32;
-            let far = view.far_m as f32;
-            let metres: Vec<f32> = bytemuck::cast_slice(&stored)
-                .iter()
-                .map(|&depth: &f32| match depth {
-                    0.0 => f32::INFINITY,
-                    depth if view.is_orthographic() => far - depth * (far - near),
-                    depth => near / depth,
-                })
-                .collect();
-            put(out, request.size, part, &metres);
-        }
-        if picture.object_id.is_none() && picture.normal.is_none() {
-            return Ok(());
-        }
-        let codes = gpu.read_texture(&targets.codes.texture, 0, wgpu::TextureAspect::All)?;
-        let codes: Vec<[u32; 2]> = match targets.needs.smooth {
-            true => bytemuck::cast_slice(&codes).to_vec(),
-            false => {
-                // Flat faces: the normal stands with the surface.
-                let normal = |code: u32| code.checked_sub(1).and_then(surface).map_or(0, |s| s.normal);
-                bytemuck::cast_slice(&codes).iter().map(|&code: &u32| [code, normal(code)]).collect()
-            }
-        };
-        if let Some(out) = &mut picture.object_id {
-            let ids: Vec<u32> = codes.iter().map(|&[code, _]| self.renderer.object_id(code)).collect();
-            put(out, request.size, part, &ids);
-        }
-        if let Some(out) = &mut picture.normal {
-            let width = part.drawn.size[0];
-            let normal = |(i, &[code, normal]): (usize, &[u32; 2])| {
-                if code == 0 {
-                    return [0.0; 3];
-                }
-                let n = decode_normal(normal);
-                let [x, y] = [i as u32 % width + part.drawn.origin[0], i as u32 / width + part.drawn.origin[1]];
-                // As in `lib/point.wgsl`.
-                let is_lit_as_before = surface(code - 1).is_some_and(|s| s.is_lit_as_before());
-                let away = !is_lit_as_before && n.dot(view.pixel_ray(x, y).direction) > 0.0;
-                (if away { -n } else { n }).as_vec3().to_array()
-            };
-            let normals: Vec<[f32; 3]> = codes.iter().enumerate().map(normal).collect();
-            put(out, request.size, part, &normals);
-        }
-        Ok(())
-    }
-
-    /// Reads the class bits of all lenses.
-    fn read_masks(&self, scene_lens_count: usize, part: Part, picture: &mut Picture) -> Result<(), RenderError> {
-        let Some(targets) = self.renderer.targets() else { return Ok(()) };
-        let size = picture.size;
-        // The GPU holds all three classes, whether or not they were asked for.
-        let per_word = picture.classes.len() / scene_lens_count.max(1).div_ceil(32);
-        for (i, plane) in picture.classes.iter_mut().enumerate() {
-            let layer = (i / per_word * 3 + i % per_word) as u32;
-            let bytes = self.renderer.gpu.read_texture(&targets.masks.texture, layer, wgpu::TextureAspect::All)?;
-            put(plane, size, part, bytemuck::cast_slice::<u8, u32>(&bytes));
-        }
-        Ok(())
+        Ok(band.read_picture(&self.renderer, part)?)
     }
 
     #[allow(clippy::too_many_arguments, reason = "all that a picture was made of")]
@@ -792,31 +767,16 @@ fn input<'a>(scene: &Scene, request: &Request, resolved: &'a Resolved, tile: Pic
 }
 
 impl Picture {
-    fn empty(request: &Request, lens_count: usize) -> Self {
-        let pixels = request.size[0] as usize * request.size[1] as usize;
-        let Aovs { depth, object_id, normal, lens_mask } = request.aovs;
-        let words = lens_count.max(1).div_ceil(32);
-        let planes = if request.statistics { 3 * words } else { usize::from(lens_mask) * words };
-        Self {
-            size: request.size,
-            rgba: vec![[0; 4]; pixels],
-            depth: depth.then(|| vec![f32::INFINITY; pixels]),
-            object_id: object_id.then(|| vec![0; pixels]),
-            normal: normal.then(|| vec![[0.0; 3]; pixels]),
-            lens_mask: None,
-            classes: vec![vec![0; pixels]; planes],
-            excess: BTreeMap::new(),
-            open: BTreeMap::new(),
-            layers: LayerFigures::default(),
-            method: MethodFigures::default(),
-            not_derived: Default::default(),
-            weakened: BTreeMap::new(),
-            deformed: None,
-            overlays: Vec::new(),
-            without_glyph: Default::default(),
-            made: (0, 0),
-            statistics: Statistics::default(),
-        }
+    /// The same with the pixels of bands.
+    fn with(self, bands: Band) -> Self {
+        let Band { rgba, depth, object_id, normal, lens_mask, .. } = bands;
+        Self { rgba, depth, object_id, normal, lens_mask, ..self }
+    }
+
+    /// One without pixels, of which nothing is known yet.
+    fn empty(request: &Request, drawn_lenses: usize) -> Self {
+        let counted = if request.statistics { drawn_lenses } else { 0 };
+        Self { size: request.size, class_counts: vec![ClassCounts::default(); counted], ..Self::default() }
     }
 }
 

@@ -68,6 +68,8 @@ pub(super) struct FramePlan<'a> {
     /// Whether some of what is shown has a base colour, and a normal per vertex.
     pub colored: bool,
     pub smooth: bool,
+    /// Whether some walls have storeys and windows.
+    pub facades: bool,
     /// Whether materials of it are translucent, in view or not; and whether textures are.
     pub clear_materials: bool,
     pub blended: bool,
@@ -174,6 +176,7 @@ impl<'a> FramePlan<'a> {
             adapter,
             details: facts.details(input),
             colored: has_sections || facts.is_textured(),
+            facades: facts.has_facades(),
             // Sections have normals of their own.
             smooth: has_sections || facts.has_smooth,
             clear_materials: facts.has_clear_materials(),

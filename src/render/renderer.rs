@@ -13,12 +13,13 @@ use crate::{
         cities::Cities,
         city::{CityBuffers, Shown},
         city_on_gpu::CityOnGpu,
-        contents::WantedContent,
+        contents::{ContentLook, WantedContent},
         deformed::{DeformedFigures, Deforming},
         frame::FrameInput,
         images::Images,
         layers::{LayerFigures, MethodFigures},
         layout,
+        parts::Tiling,
         pass::{
             Inputs,
             context::{FrameContext, Preparing},
@@ -69,6 +70,11 @@ impl Renderer {
         })
     }
 
+    /// How pictures are cut that are too large for a target, where pixels take so many bytes, and filters look so many pixels far.
+    pub(super) fn tiling(&self, pixel_bytes: u64, reach: u32) -> Tiling {
+        Tiling::new(self.gpu.device.limits().max_texture_dimension_2d, pixel_bytes, self.settings.tile, reach)
+    }
+
     /// Puts a city on the GPU in place of the last one.
     pub fn set_city(&mut self, shown: &Shown, blocks: Option<&CityModel>) -> Result<(), GpuError> {
         self.city = None;
@@ -84,15 +90,18 @@ impl Renderer {
     }
 
     /// Makes the GPU hold these contents beside the scene's city, whose plain ground is `ground`, and no others; with their
-    /// edges where something draws lines. Between frames with the same contents nothing is made.
+    /// edges where something draws lines, and with storeys and windows on walls where these are wanted. Between frames with the same contents nothing
+    /// is made.
     pub fn set_contents(
         &mut self,
         wanted: &[WantedContent],
         ground: Option<&Ground>,
         edges: bool,
+        facades: bool,
     ) -> Result<(), GpuError> {
         let Some(own) = &self.city else { return Ok(()) };
-        if self.view.contents.set(&self.gpu, &self.pipelines, own, wanted, ground, edges)? {
+        let how = ContentLook { ground, edges, facades };
+        if self.view.contents.set(&self.gpu, &self.pipelines, own, wanted, how)? {
             self.view.change_surfaces();
         }
         Ok(())

@@ -7,6 +7,7 @@ use crate::{
         eye::PictureTile,
         frame::FrameInput,
         screen_bound::ScreenBound,
+        sprite_grid::SpriteGrid,
         sprites::{self, Pages, Place},
         stored::{self, SpriteRoom, Stored},
         volume::LensVolume,
@@ -30,8 +31,8 @@ pub(super) struct SeenVolume {
 
 /// The sprite of a volume that may be seen.
 pub(super) struct SeenSprite {
-    /// Its width and height, texels.
-    pub size: [u32; 2],
+    /// Its texels against the picture's pixels.
+    pub grid: SpriteGrid,
     /// The part of it that is kept, texels.
     pub bounds: PictureTile,
     /// Where it is kept.
@@ -57,12 +58,11 @@ pub(super) struct Seen {
     pub lists: u64,
 }
 
-/// Texels of a sprite.
+/// Texels of a sprite of the whole picture.
 fn sprite_size(input: &FrameInput, sprite: LensSprite) -> [u32; 2] {
-    let size = input.tile.size;
+    let size = input.view.size;
     let Some(longer) = sprite.resolution else { return size };
-    // The resolution is one of the whole picture; a tile of it has its share.
-    let scale = f64::from(longer) / f64::from(input.view.size[0].max(input.view.size[1]));
+    let scale = f64::from(longer) / f64::from(size[0].max(size[1]));
     size.map(|side| ((f64::from(side) * scale).round() as u32).clamp(1, 16_384))
 }
 
@@ -86,12 +86,8 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom, idl
             continue;
         }
         let wanted = volume.sprite.unwrap_or_default();
-        let sprite = sprite_size(input, wanted);
-        let to_texel = |i: usize, pixel: u32| f64::from(pixel) * f64::from(sprite[i]) / f64::from(input.tile.size[i]);
-        let low: [u32; 2] = std::array::from_fn(|i| to_texel(i, bounds.origin[i]).floor() as u32);
-        let high: [u32; 2] =
-            std::array::from_fn(|i| (to_texel(i, bounds.origin[i] + bounds.size[i]).ceil() as u32 + 1).min(sprite[i]));
-        let sprite_bounds = PictureTile { origin: low, size: [high[0] - low[0], high[1] - low[1]] };
+        let grid = SpriteGrid { size: sprite_size(input, wanted), picture: input.view.size, tile: input.tile };
+        let sprite_bounds = grid.around(bounds);
         let mut kept = Kept::Page(Place::default());
         if test.is_sprite() {
             let code = stored::code_of(&wanted, volume, &input.view, city);
@@ -107,7 +103,7 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom, idl
             words += stored.words(sprite_bounds.size);
             kept = Kept::Stored(stored);
         }
-        let sprite = Some(SeenSprite { size: sprite, bounds: sprite_bounds, kept });
+        let sprite = Some(SeenSprite { grid, bounds: sprite_bounds, kept });
         seen.push(SeenVolume { index, lens, test, leaves, part, bounds, sprite });
     }
     let mut on_pages: Vec<(&mut Place, [u32; 2])> = seen

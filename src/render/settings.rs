@@ -19,6 +19,9 @@ pub struct Settings {
     pub shuffled: Option<u32>,
     /// Texels along a side of the shadow map, at least [`crate::render::light::LEAST_SHADOW_SIZE`]; what drawing it costs grows with its square.
     pub shadow_size: u32,
+    /// Longest side of what is kept of a tile, at least [`crate::render::parts::LEAST_TILE`], pixels; `None`: as large as targets may be. Larger pictures are
+    /// drawn in tiles.
+    pub tile: Option<u32>,
     /// Pipelines that may be kept when a frame starts; where there are more, those go that were used longest ago.
     pub most_pipelines: usize,
 }
@@ -36,6 +39,7 @@ impl Settings {
             picked_layer: None,
             shuffled: None,
             shadow_size: SHADOW_SIZE,
+            tile: None,
             most_pipelines: MOST_PIPELINES,
         }
     }

@@ -114,7 +114,8 @@ impl<'a> SurfaceTable<'a> {
             TexelOpacity::Translucent => Texels::Opaque,
         };
         let normal_scale = if normals == NONE { 0.0_f32 } else { material.normal_scale };
-        let images = Images { color, emission, normals, normal_scale: normal_scale.to_bits(), texels };
+        let normal_scale_bits = normal_scale.to_bits();
+        let images = Images { color, emission, normals, normal_scale: normal_scale_bits, texels, facade: false };
         ([color, emission] != [NONE; 2] || normal_scale != 0.0).then_some(images)
     }
 }
@@ -279,7 +280,7 @@ fn natural_color(
 }
 
 /// What a surface is part of: by its semantics; where a building has none, by which way it faces.
-fn part_of(model: &CityModel, surface: &Surface, normal: u32) -> u32 {
+pub(super) fn part_of(model: &CityModel, surface: &Surface, normal: u32) -> u32 {
     let class = model.objects[surface.object as usize].class;
     if class.is_ground() {
         return layout::PART_TERRAIN;

@@ -21,7 +21,7 @@ pub struct Textures {
     entries: Vec<Option<(wgpu::TextureView, wgpu::Sampler)>>,
     /// Which of them have texels that are not opaque.
     translucent: Vec<bool>,
-    /// One white texel, where there is some texture.
+    /// One white texel, where there is some texture, or what is drawn as if it had one.
     white: Option<(wgpu::TextureView, wgpu::Sampler)>,
     bytes: u64,
 }
@@ -103,7 +103,7 @@ impl Textures {
                 }
             }
         }
-        let white = wanted.first().map(|_| white(gpu));
+        let white = (shown.facades || !wanted.is_empty()).then(|| white(gpu));
         Ok(Self { entries, translucent, white, bytes: gpu.allocated_bytes() - before })
     }
 

@@ -117,6 +117,8 @@ pub struct Style {
     pub transparency: Transparency,
     /// How far edges that a deformation bends may be from where they should be, pixels, > 0.
     pub chord_px: f64,
+    /// Whether walls without textures have storeys and windows.
+    pub facades: bool,
 }
 
 /// Where nobody says how far bent edges may be off, pixels.
@@ -132,6 +134,7 @@ impl Default for Style {
             technique: Technique::default(),
             transparency: Transparency::default(),
             chord_px: CHORD_PX,
+            facades: false,
         }
     }
 }

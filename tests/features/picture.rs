@@ -3,6 +3,10 @@
 use crate::studio::*;
 use glam::DVec3;
 use veduta::{
+    figure::{
+        picture::{Notes, save_picture},
+        scene_file,
+    },
     geom::{Aabb, Shape},
     lens::{Class, Lens, LensBody, LensSprite, Region, classify},
     render::{
@@ -10,7 +14,7 @@ use veduta::{
         picture::{Aovs, Request, Studio},
         stats::LensFigures,
     },
-    scene::{BaseStyle, Scene},
+    scene::{BaseStyle, Scene, StyleLook},
     view::{Camera, View},
 };
 
@@ -348,4 +352,27 @@ fn clay_has_one_colour() {
     // Two faces that the sun does not reach at the same inclination to the sky differ in nothing but colour of file.
     let (a, b) = (from(&mut studio, DVec3::Y), from(&mut studio, DVec3::X));
     assert_eq!(a[0].cmp(&a[2]), b[0].cmp(&b[2]), "{a:?} {b:?}");
+}
+
+/// The pictures by which the window offers looks are those of the looks: `VEDUTA_UPDATE=looks` draws them anew.
+#[test]
+fn looks_are_offered_by_pictures_of_them() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/looks");
+    let text = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [-52, -78, 40]\ntarget = [4, 6, 5]\nfov_deg = 38.0\n";
+    let scene = scene_file::parse(text, "looks", &scene_file::Options::for_command_line()).expect("a scene");
+    let mut studio = with_full_shadows(of_scene(&scene));
+    for (word, look) in StyleLook::WORDS {
+        let mut scene = scene.clone();
+        scene.style.look = look;
+        let drawn = studio.render(&scene, &Request { samples: 32, ..Request::plain([168, 112]) }).expect("a picture");
+        let file = folder.join(format!("{word}.png"));
+        if std::env::var_os("VEDUTA_UPDATE").is_some_and(|what| what == "looks") {
+            save_picture(&file, drawn.size, &drawn.rgba, true, &Notes::default()).expect("a file");
+        }
+        let shipped = image::open(&file).expect("a picture").into_rgba8();
+        let off = drawn.rgba.as_flattened().iter().zip(shipped.as_raw()).map(|(a, b)| f64::from(a.abs_diff(*b)));
+        let mean = off.sum::<f64>() / (drawn.rgba.len() * 3) as f64;
+        // Adapters differ a little; looks by 30 and more.
+        assert!(mean < 4.0, "{word}: {mean}");
+    }
 }

@@ -6,6 +6,7 @@ use crate::studio::{self, Reference, lens, orthographic, scene, synthetic, used}
 use glam::{DQuat, DVec2, DVec3};
 use veduta::{
     city::synth,
+    figure::picture::{Aov, AovFile},
     geom::{Aabb, Shape},
     lens::{
         Class, EffectUse, Lens, LensBody, LensSprite, OwnEye, Parameter, Placement, Region, SpriteSpace, classify,
@@ -574,7 +575,9 @@ fn wrong_files_are_told_in_one_line() {
     save(&mut studio, &first, &right);
     let whole = std::fs::read(&right).expect("a file");
     let depth = folder.file("depth.exr");
-    veduta::figure::picture::save_depth(&depth, [2, 2], &[1.0; 4], &Default::default()).expect("an AOV");
+    let band = veduta::render::bands::Band { size: [2, 2], depth: Some(vec![1.0; 4]), ..Default::default() };
+    let mut aov = AovFile::new(&depth, Aov::Depth, [2, 2], &Default::default()).expect("an AOV");
+    aov.take(&band).and_then(|()| aov.finish()).expect("an AOV");
     std::fs::write(folder.file("text.exr"), "no picture").expect("a file");
     std::fs::write(folder.file("torn.exr"), &whole[..whole.len() / 2]).expect("a file");
     let good = studio.sprite_of(&first, SIZE, 0).expect("a sprite");

@@ -110,8 +110,14 @@ pub fn set_city(studio: &mut Studio, panes: &[Pane]) {
     std::fs::remove_file(path).expect("the temporary file");
     let geometries = shown_geometries(&model, None);
     let coplanar = coplanar_triangles(&model, &geometries);
-    let shown =
-        Shown { model: &model, geometries: &geometries, coplanar: &coplanar, ground: None, is_lit_as_before: false };
+    let shown = Shown {
+        model: &model,
+        geometries: &geometries,
+        coplanar: &coplanar,
+        ground: None,
+        is_lit_as_before: false,
+        facades: false,
+    };
     studio.renderer.set_city(&shown, None).expect("the city fits");
     (studio.model, studio.geometries) = (Arc::new(model), geometries);
 }

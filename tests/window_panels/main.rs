@@ -19,6 +19,7 @@ use veduta::{
     },
     gpu::Gpu,
     render::picture::{Aovs, Request, Studio},
+    scene::StyleLook,
     view::navigate::Axis,
 };
 
@@ -633,4 +634,76 @@ fn a_figure_is_shown_as_it_will_be() {
     }
     assert!(in_window[0] > 1.5 * as_figure[0], "{in_window:?}");
     assert_eq!(harness.state().frame.as_ref().unwrap().scene.figure.title.as_deref(), Some("A title"));
+}
+
+/// The picture that the window shows, in its shape and with its overlays, as a file and in the clipboard.
+#[test]
+fn what_the_window_shows_is_exported_and_copied() {
+    let folder = std::env::temp_dir().join(format!("veduta-window-shown-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut harness = window();
+    let text = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [14, -112, 35]\ntarget = [-30, -14, 5]\n[[poi]]\nname = \"p\"\n\
+                object = \"church\"\n[[lens]]\nname = \"v\"\nkind = \"best-view\"\npoi = \"p\"\n[figure]\nsize = [200, 300]\nsamples = 1\ntitle = \"A title\"\n";
+    let scene = parse(text, "shown", &Options::for_command_line()).unwrap_or_else(|error| panic!("{error}"));
+    harness.state_mut().document.edit("the scene", |own| *own = scene.clone());
+    until_drawn(&mut harness);
+    let size = harness.state().frame.as_ref().unwrap().view.size;
+    assert_eq!(harness.state().shown_size(), Some(size));
+    press(&mut harness, Modifiers::COMMAND, Key::E);
+    assert!(harness.query_all_by_label_contains("(see Figure): 200 × 300 pixels, 1 sample each").count() == 1);
+    harness.get_by_label_contains("As the window shows it").click();
+    harness.run_steps(3);
+    let file = folder.join("shown.png");
+    harness.get_by_role_and_label(egui::Role::TextInput, "File").focus();
+    harness.step();
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    write(&mut harness, &file.display().to_string());
+    click(&mut harness, "Export");
+    let started = Instant::now();
+    while harness.query_all_by_label_contains("is written").count() == 0 {
+        assert!(started.elapsed() < PATIENCE, "waited in vain for the picture");
+        std::thread::sleep(Duration::from_millis(10));
+        harness.step();
+    }
+    assert!(harness.query_all_by_label_contains("without a window").count() == 0, "no command makes it again");
+    let written = image::open(&file).unwrap().into_rgba8();
+    let model = harness.state().city.as_ref().unwrap().model.clone();
+    let mut studio = Studio::new(Gpu::open().unwrap(), model, &scene.city).unwrap();
+    let mut untitled = scene.clone();
+    untitled.figure.title = None;
+    let drawn = figure::draw(&mut studio, &untitled, &Request::plain(size)).unwrap();
+    assert_eq!([written.width(), written.height()], size);
+    assert!(written.as_raw() == drawn.rgba.as_flattened(), "the picture of the window, and its overlay");
+    // The clipboard gets what is seen.
+    until_drawn(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C);
+    harness.step();
+    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyImage(image) => Some(image.clone()),
+        _ => None,
+    });
+    let copied = copied.expect("a picture");
+    let frame = harness.state().frame.as_ref().unwrap();
+    let seen: Vec<[u8; 4]> = copied.pixels.iter().map(egui::Color32::to_array).collect();
+    assert!(copied.size == size.map(|side| side as usize) && seen == frame.rgba, "what is seen");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Looks are chosen by pictures, in a panel that stays as wide as it is.
+#[test]
+fn a_look_is_chosen_by_its_picture() {
+    let mut harness = window();
+    let before = harness.get_by_label("City").rect().width();
+    click(&mut harness, "Style");
+    harness.run_steps(20);
+    assert_eq!(harness.get_by_label("City").rect().width(), before, "the panel grows");
+    let paper = |harness: &Panels| harness.state().document.scene().style.look;
+    assert_eq!(paper(&harness), StyleLook::Natural);
+    let pictures = harness.query_all_by_role(egui::Role::RadioButton).count();
+    assert_eq!(pictures, 5);
+    harness.get_by_role_and_label(egui::Role::RadioButton, "paper").click();
+    harness.run_steps(3);
+    assert_eq!(paper(&harness), StyleLook::Paper);
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(paper(&harness), StyleLook::Natural, "it is an edit");
 }

@@ -6,6 +6,7 @@ use toml::Value;
 use crate::{
     app::properties::{
         edits::{Change, Drafts, Edits, To},
+        looks,
         values::{hex, number_of, number_value, trimmed},
     },
     figure::scene_file::keys::Kind,
@@ -141,6 +142,11 @@ pub fn widget(ui: &mut Ui, edits: &mut Edits, takes: Takes, value: &Value, setti
             let mut is = *is;
             if ui.add(egui::Checkbox::without_text(&mut is)).labelled_by(label).changed() {
                 push(Value::Boolean(is), false);
+            }
+        }
+        (Takes::Words(words), Value::String(now)) if looks::are_looks(&words) => {
+            if let Some(word) = looks::menu(ui, &words, now, label) {
+                push(Value::String(word), false);
             }
         }
         (Takes::Words(words), Value::String(now)) => {

@@ -14,7 +14,7 @@ use crate::{
         file_dialog::{Asking, FileDialog, Purpose},
         new_lens::{self, Spot},
         objects,
-        render_thread::Export,
+        render_thread::{Draw, Export},
         state::{Chosen, Window},
         unsaved::LeftBehind,
         user_effects::is_effect,
@@ -23,6 +23,7 @@ use crate::{
     figure::{picture, scene_file},
     geom::Aabb,
     lens::Lens,
+    scene::Scene,
     view::{Projection, navigate},
 };
 
@@ -39,6 +40,7 @@ impl Window {
             }
             Action::HideObject | Action::IsolateObject => self.chosen.object.is_some(),
             Action::FrameChosen => self.chosen != Chosen::default(),
+            Action::CopyPicture => self.frame.as_ref().is_some_and(|frame| !frame.rgba.is_empty()),
             Action::AddLens(kind) => self.city.is_some() && (!kind.needs_object() || self.chosen.object.is_some()),
             Action::Quit | Action::Open | Action::OpenBuiltin | Action::Shortcuts | Action::ToggleTheme => true,
             _ => self.city.is_some(),
@@ -65,6 +67,7 @@ impl Window {
             },
             Action::SaveAs => self.dialog = Some(FileDialog::save(self.folder())),
             Action::Export => self.dialog = Some(FileDialog::export(self.folder())),
+            Action::CopyPicture => self.copy_picture(context),
             Action::Quit => self.guarded(Purpose::Quit),
             Action::Undo | Action::Redo => self.undo_or_redo(action),
             Action::AddLens(kind) => {
@@ -267,9 +270,39 @@ impl Window {
             Ok(scene) => scene,
             Err(error) => return self.fail(error),
         };
+        self.write_figure(scene, file, true);
+    }
+
+    /// The size of the picture that the window shows, where it shows one, pixels.
+    pub fn shown_size(&self) -> Option<[u32; 2]> {
+        Some(self.asked.as_ref()?.size)
+    }
+
+    /// Writes what the window shows, as large as it shows it and with the samples of the figure.
+    pub fn export_shown(&mut self, file: &Path) {
+        self.document.settle();
+        let Some(draw) = self.asked.as_ref() else { return };
+        let draw = Draw { is_moving: false, ..draw.clone() };
+        let mut scene = draw.scene_at(draw.size);
+        scene.figure.set_pixels(draw.size);
+        self.write_figure(scene, file, false);
+    }
+
+    fn write_figure(&mut self, scene: Scene, file: &Path, is_of_scene: bool) {
         let notes = picture::notes_of(&scene, &self.document.options());
-        self.render_thread.export(Export { scene: Arc::new(scene), file: file.to_owned(), notes });
+        self.render_thread.export(Export { scene: Arc::new(scene), file: file.to_owned(), notes, is_of_scene });
         self.say(format!("Writing {}…", file.display()));
+    }
+
+    /// Puts the picture that the window shows into the clipboard.
+    fn copy_picture(&mut self, context: &Context) {
+        let Some(frame) = &self.frame else { return };
+        let size = frame.view.size.map(|side| side as usize);
+        if size[0] * size[1] != frame.rgba.len() {
+            return;
+        }
+        context.copy_image(egui::ColorImage::from_rgba_unmultiplied(size, frame.rgba.as_flattened()));
+        self.say(format!("The picture is in the clipboard: {} × {} pixels.", size[0], size[1]));
     }
 
     /// The line that makes the figure without a window.

@@ -11,8 +11,12 @@ use crate::{
         quality::Smoothness,
         render::sprites::SpriteRequest,
     },
-    figure::paper::Format,
-    render::frame::Backend,
+    figure::{paper::Format, picture::Aov},
+    render::{
+        frame::Backend,
+        parts::{LEAST_TILE, TILE},
+    },
+    scene::Scene,
 };
 
 const EXAMPLES: &str = "\
@@ -66,6 +70,9 @@ pub struct Arguments {
     /// Leave out sky and background: straight alpha
     #[arg(long)]
     pub transparent: bool,
+    /// Draw in tiles of at most so many pixels a side, 64 to 4096: less memory, and slower; the picture is the same [default: 4096]
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(i64::from(LEAST_TILE)..=i64::from(TILE)))]
+    pub tile: Option<u32>,
     /// How shaders are made; the picture is the same
     #[arg(long, value_name = "HOW", value_enum, default_value_t)]
     pub shaders: Shaders,
@@ -160,6 +167,16 @@ impl AovKind {
         ("normal", Self::Normal),
         ("lens-mask", Self::LensMask),
     ];
+
+    /// What is written of a picture of this scene.
+    pub fn content(self, scene: &Scene) -> Aov {
+        match self {
+            Self::Depth => Aov::Depth,
+            Self::ObjectId => Aov::ObjectId,
+            Self::Normal => Aov::Normal,
+            Self::LensMask => Aov::LensMask(scene.lenses.len()),
+        }
+    }
 
     fn formats(self) -> &'static [AovFormat] {
         match self {

@@ -18,15 +18,16 @@ use crate::{
         load, output, terminal,
     },
     figure::{
-        paper::{self, Format},
-        picture::{self, Notes},
+        paper::{self, Format, Target},
+        picture::{self, AovFile},
         scene_file::{self, Options},
     },
     gpu::Gpu,
     lens::nearest::did_you_mean,
     render::{
+        bands::Band,
         diagnostics,
-        picture::{Aovs, Picture, RenderError, Request, Studio},
+        picture::{Aovs, RenderError, Request, Studio},
         stats,
     },
     scene::{Command, History, Scene, SceneProblem, check_against},
@@ -52,6 +53,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         sprite.lens(&scene)?;
     }
     let (mut studio, warnings) = open(&scene, &options, &written, global)?;
+    studio.renderer.settings.tile = arguments.tile;
     let mut scene = with_camera(scene, &of_camera, &studio)?;
     if let Some(name) = &arguments.through {
         let from = studio.camera(&*studio.on_ground(&scene).map_err(Failure::failed)?, scene.figure.pixels());
@@ -87,13 +89,17 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     };
     let progress = terminal::Progress::spinning("drawing", global);
     let format = Format::of(&arguments.output).map_err(Failure::usage)?;
-    let (mut picture, page) =
-        paper::draw(&mut studio, &scene, &request, format).map_err(|error| in_file(arguments, error))?;
-    drop(progress);
     let notes = picture::notes_of(&said, &options);
-    for aov in &arguments.aovs {
-        write_aov(aov, &picture, scene.lenses.len(), &notes)?;
-    }
+    // Image-space lenses do not exist in this version: displayed and shown surface are one.
+    let file = |aov: &AovRequest| AovFile::new(&aov.file, aov.kind.content(&scene), request.size, &notes);
+    let mut aovs: Vec<AovFile> =
+        arguments.aovs.iter().map(file).collect::<Result<_, _>>().map_err(output::unwritten)?;
+    let target = Target { path: &arguments.output, format, notes: &notes };
+    let mut also = |band: &Band| aovs.iter_mut().try_for_each(|aov| aov.take(band));
+    let drawn = paper::draw(&mut studio, &scene, &request, target, &mut also);
+    let (mut picture, drawn) = drawn.map_err(|error| in_file(arguments, error))?;
+    drop(progress);
+    aovs.into_iter().try_for_each(AovFile::finish).map_err(output::unwritten)?;
     for sprite in &arguments.sprites {
         sprites::write(&mut studio, &scene, sprite)?;
     }
@@ -105,18 +111,18 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         })?;
     }
     // Last, so that a picture that is there means that everything is there.
-    let saved = match page {
-        Some(page) => page.save(&arguments.output, format, &notes, scene.figure.title.as_deref()),
-        None => picture::save_picture(&arguments.output, picture.size, &picture.rgba, !arguments.transparent, &notes),
-    };
-    saved.map_err(output::unwritten)
+    drawn.finish().map_err(output::unwritten)
 }
 
-/// An error of what a scene says names its file.
+/// An error of what a scene says names its file; one of what is written says what would be right.
 fn in_file(arguments: &Arguments, error: RenderError) -> Failure {
-    match (&error, arguments.scene()) {
+    match (error, arguments.scene()) {
         (RenderError::Scene(message), Some(file)) => Failure::failed(format!("{}: {message}", file.display())),
-        _ => Failure::failed(error),
+        (RenderError::Taken(error), _) => match error.downcast() {
+            Ok(error) => output::unwritten(*error),
+            Err(error) => Failure::failed(error),
+        },
+        (error, _) => Failure::failed(error),
     }
 }
 
@@ -266,18 +272,4 @@ pub fn told(problems: Vec<SceneProblem>, whose: &str) -> Outcome<Vec<SceneProble
     }
     others.iter().for_each(|problem| log::warn!("{whose}: {problem}"));
     Ok(others)
-}
-
-fn write_aov(aov: &AovRequest, picture: &Picture, lens_count: usize, notes: &Notes) -> Outcome {
-    let (file, size) = (&aov.file, picture.size);
-    // Image-space lenses do not exist in this version: displayed and shown surface are one.
-    let written = match aov.kind {
-        AovKind::Depth => picture.depth.as_ref().map(|depth| picture::save_depth(file, size, depth, notes)),
-        AovKind::ObjectId => picture.object_id.as_ref().map(|ids| picture::save_object_id(file, size, ids, notes)),
-        AovKind::Normal => picture.normal.as_ref().map(|normals| picture::save_normal(file, size, normals, notes)),
-        AovKind::LensMask => {
-            picture.lens_mask.as_ref().map(|masks| picture::save_lens_mask(file, size, masks, lens_count, notes))
-        }
-    };
-    written.expect("every AOV that is asked for is drawn").map_err(output::unwritten)
 }

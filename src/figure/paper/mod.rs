@@ -13,17 +13,18 @@ mod pdf;
 mod svg;
 mod web_font;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::{
     figure::{
         self, Apart,
         file::{WriteError, write_whole},
-        picture::{self, Notes},
+        picture::{self, Notes, PictureFile},
         sheet::{Layout, layout::PAPER},
     },
     gpu::GpuError,
     render::{
+        bands::Band,
         furniture::{BoardPiece, Furniture, Piece},
         picture::{Picture, RenderError, Request, Studio},
         renderer::Renderer,
@@ -64,22 +65,74 @@ impl Format {
     }
 }
 
-/// Draws a figure for a file: the picture, with what stands over it in PNGs; for formats of paper without, and the page that it makes.
+/// A file that a figure is to be.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<'a> {
+    /// Its path.
+    pub path: &'a Path,
+    /// Its format.
+    pub format: Format,
+    /// What it says of itself.
+    pub notes: &'a Notes,
+}
+
+/// A figure that is drawn, and not there yet.
+#[must_use = "it is not there before it is finished"]
+pub struct Drawn {
+    path: PathBuf,
+    of: Of,
+}
+
+/// What it is.
+enum Of {
+    Pixels(Box<PictureFile>),
+    Page { page: Page, format: Format, notes: Notes, title: Option<String> },
+}
+
+impl Drawn {
+    /// Puts it where it is to be.
+    ///
+    /// # Errors
+    /// Those of the file system; what the format cannot hold.
+    pub fn finish(self) -> Result<(), WriteError> {
+        match self.of {
+            Of::Pixels(file) => file.finish(),
+            Of::Page { page, format, notes, title } => page.save(&self.path, format, &notes, title.as_deref()),
+        }
+    }
+}
+
+/// Draws a figure for a file: pixels are written band by band, with what stands over them; formats of paper hold that apart. `also` sees every band. The
+/// picture of the answer has no pixels.
 ///
 /// # Errors
-/// Those of [`figure::draw`].
+/// Those of [`figure::draw_in_bands`].
 pub fn draw(
     studio: &mut Studio,
     scene: &Scene,
     request: &Request,
-    format: Format,
-) -> Result<(Picture, Option<Page>), RenderError> {
+    target: Target,
+    also: &mut dyn FnMut(&Band) -> Result<(), WriteError>,
+) -> Result<(Picture, Drawn), RenderError> {
+    let Target { path, format, notes } = target;
+    let drawn = |of| Drawn { path: path.to_owned(), of };
     if format == Format::Png {
-        return Ok((figure::draw(studio, scene, request)?, None));
+        let file = PictureFile::new(path, request.size, !request.transparent, notes);
+        let mut file = file.map_err(|error| RenderError::Taken(error.into()))?;
+        let picture = figure::draw_in_bands(studio, scene, request, &mut |band| {
+            also(&band)?;
+            Ok(file.rows(&band.rgba)?)
+        })?;
+        return Ok((picture, drawn(Of::Pixels(Box::new(file)))));
     }
-    let apart = figure::draw_apart(studio, scene, request)?;
-    let page = Page::of_figure(&mut studio.renderer, &apart)?;
-    Ok((apart.picture, Some(page)))
+    let mut rgba: Vec<[u8; 4]> = Vec::new();
+    let Apart { picture, furniture } = figure::draw_apart(studio, scene, request, &mut |band| {
+        also(&band)?;
+        rgba.extend(band.rgba);
+        Ok(())
+    })?;
+    let page = Page::of_figure(&mut studio.renderer, Raster { at: [0, 0], size: request.size, rgba }, &furniture)?;
+    Ok((picture, drawn(Of::Page { page, format, notes: notes.clone(), title: scene.figure.title.clone() })))
 }
 
 /// A figure, ready to be written as vectors.
@@ -110,15 +163,14 @@ impl Told<'_> {
 }
 
 impl Page {
-    /// The page of a figure. Its images are those that the renderer keeps: nothing else may have been drawn since.
+    /// The page of a picture and of what stands over it, whose images are those that the renderer keeps: nothing else may have been drawn since.
     ///
     /// # Errors
     /// Those of the GPU.
-    pub fn of_figure(renderer: &mut Renderer, figure: &Apart) -> Result<Self, GpuError> {
-        let size = figure.picture.size;
-        let picture = Mark::Raster(Raster { at: [0, 0], size, rgba: figure.picture.rgba.clone() });
-        let over = drawn(renderer, size, &figure.furniture)?;
-        Ok(Self { size, marks: std::iter::once(picture).chain(over).collect() })
+    fn of_figure(renderer: &mut Renderer, picture: Raster, over: &Furniture) -> Result<Self, GpuError> {
+        let size = picture.size;
+        let over = drawn(renderer, size, over)?;
+        Ok(Self { size, marks: std::iter::once(Mark::Raster(picture)).chain(over).collect() })
     }
 
     /// The page of a sheet, whose cells are pictures of one size.
@@ -144,12 +196,12 @@ impl Page {
     ///
     /// # Errors
     /// Those of the file system; what the format cannot hold.
-    pub fn save(&self, path: &Path, format: Format, notes: &Notes, title: Option<&str>) -> Result<(), WriteError> {
+    pub fn save(self, path: &Path, format: Format, notes: &Notes, title: Option<&str>) -> Result<(), WriteError> {
         let told = Told { notes, title };
         let wrong = |message: String| WriteError::Format { path: path.to_owned(), message };
         let bytes = match format {
             Format::Pdf => pdf::bytes(self, &told).map_err(wrong)?,
-            Format::Svg => svg::text(self, &told).map_err(wrong)?.into_bytes(),
+            Format::Svg => svg::text(&self, &told).map_err(wrong)?.into_bytes(),
             Format::Png => return Err(wrong("a page is written as .pdf or .svg; name one of them".to_owned())),
         };
         write_whole(path, |out| out.write_all(&bytes))

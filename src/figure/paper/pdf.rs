@@ -26,7 +26,7 @@ use crate::{
 const POINTS: f64 = 72.0;
 
 /// The file; the same of the same page.
-pub fn bytes(page: &Page, told: &Told) -> Result<Vec<u8>, String> {
+pub fn bytes(page: Page, told: &Told) -> Result<Vec<u8>, String> {
     let scale = POINTS / told.dots();
     let [width, height] = page.size.map(|side| (f64::from(side) * scale) as f32);
     let settings =
@@ -37,7 +37,7 @@ pub fn bytes(page: &Page, told: &Told) -> Result<Vec<u8>, String> {
     let mut paper = document.start_page_with(settings);
     let mut surface = paper.surface();
     surface.push_transform(&Transform::from_scale(scale as f32, scale as f32));
-    for mark in &page.marks {
+    for mark in page.marks {
         match mark {
             Mark::Raster(raster) => draw_raster(&mut surface, raster),
             Mark::Fill(fill) => {
@@ -47,7 +47,7 @@ pub fn bytes(page: &Page, told: &Told) -> Result<Vec<u8>, String> {
                     surface.draw_path(&path);
                 }
             }
-            Mark::Text(text) => draw_text(&mut surface, text, &mut fonts)?,
+            Mark::Text(text) => draw_text(&mut surface, &text, &mut fonts)?,
         }
     }
     surface.pop();
@@ -66,9 +66,10 @@ fn metadata(told: &Told) -> Metadata {
         .keywords(keywords.into_iter().collect())
 }
 
-fn draw_raster(surface: &mut Surface, raster: &Raster) {
+fn draw_raster(surface: &mut Surface, raster: Raster) {
     let [width, height] = raster.size;
-    let image = Image::from_rgba8(raster.rgba.as_flattened().to_vec(), width, height);
+    // Not a second copy: it may be a large part of all memory.
+    let image = Image::from_rgba8(raster.rgba.into_flattened(), width, height);
     let Some(size) = Size::from_wh(width as f32, height as f32) else { return };
     surface.push_transform(&Transform::from_translate(raster.at[0] as f32, raster.at[1] as f32));
     surface.draw_image(image, size);

@@ -628,7 +628,7 @@ prop_compose! {
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
             camera_above_ground: with_camera && ground,
             sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2, ..Sun::default() },
-            style: Style { look: StyleLook::WORDS[sun.0.unsigned_abs() as usize % 5].1, base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency, chord_px },
+            style: Style { look: StyleLook::WORDS[sun.0.unsigned_abs() as usize % 5].1, base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency, chord_px, facades: !clay && ground },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else if i == 1 { PoiPlace::AboveGround(at) } else { PoiPlace::At(at) } }).chain(moving).collect(),
             lenses,
             figure: Figure { size: if figure.paper.is_some() { figure.size } else { size }, samples: Some(samples), ..figure },

@@ -44,6 +44,18 @@ pub const STYLE_ROWS: &[Row<Style>] = &[
         Word,
         |style: Style| style.base
     ),
+    field!(
+        key(
+            "facades",
+            Kind::Boolean,
+            "false",
+            "",
+            "Storeys and windows on the walls of buildings that have no texture: as many as attributes say (`storeysAboveGround` and the like), else one for about 3 m.",
+            "true",
+        ),
+        Same,
+        |style: Style| style.facades
+    ),
     Row::<Style>::new(
         key("effects", Kind::Effects, "none", "", "Effects on the context, in order; see Effects.", "[\"greyscale\"]"),
         |style, _| effects::listed(&style.effects),

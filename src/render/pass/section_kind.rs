@@ -35,12 +35,14 @@ pub struct Look {
     pub emits: bool,
     /// What the x and y of that of normals are multiplied with: the bits of its f32; 0 where there is none.
     pub normal_scale: u32,
+    /// Whether there is none: storeys and windows are drawn.
+    pub facade: bool,
 }
 
 impl Look {
     fn of(images: Images) -> Self {
-        let Images { emission, normal_scale, texels, .. } = images;
-        Self { texels, emits: emission != NONE, normal_scale }
+        let Images { emission, normal_scale, texels, facade, .. } = images;
+        Self { texels, emits: emission != NONE, normal_scale, facade }
     }
 }
 
@@ -130,12 +132,13 @@ impl GeometryKind {
             Texels::Holes(least) => f64::from(f32::from_bits(least)),
             Texels::Translucent => LEAST_SEEN,
         };
-        let of_images = self.look().map(|Look { texels, emits, normal_scale }| {
+        let of_images = self.look().map(|Look { texels, emits, normal_scale, facade }| {
             [
                 ("ALPHA_CUTOFF", least(texels)),
                 ("TRANSLUCENT", flag(texels == Texels::Translucent)),
                 ("IMAGE_EMITS", flag(emits)),
                 ("NORMAL_SCALE", f64::from(f32::from_bits(normal_scale))),
+                ("FACADE", flag(facade)),
             ]
         });
         of_images.into_iter().flatten().chain(holds_depth.then_some(("WORDS_BESIDES", (bytes / 4) as f64))).collect()
@@ -150,6 +153,7 @@ impl GeometryKind {
             Texels::Holes(_) => " of textures with holes",
             Texels::Translucent => " of translucent textures",
         };
+        let texels = if look.facade { " of storeys" } else { texels };
         format!("{plane}{texels}{}", words(&[(look.emits, "of light"), (look.normal_scale != 0, "of normals")]))
     }
 }

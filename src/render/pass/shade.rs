@@ -87,6 +87,8 @@ pub struct ShadeKey {
     texels_emit: bool,
     /// Some of what is shown are sections.
     sections: bool,
+    /// Some walls have storeys and windows.
+    facades: bool,
     /// There is a plain ground, which fades.
     fades: bool,
     /// What is behind the city.
@@ -109,6 +111,7 @@ impl ShadeKey {
             emits: plan.emits,
             texels_emit: plan.texels_emit,
             sections: plan.has_sections,
+            facades: plan.facades,
             fades: plan.fade.is_some(),
             behind: plan.input.behind(),
         }
@@ -145,6 +148,7 @@ impl PipelineKey for ShadeKey {
             (self.emits, "emission"),
             (self.texels_emit, "of texels"),
             (self.sections, "sections"),
+            (self.facades, "facades"),
             (self.fades, "plain ground"),
         ];
         format!("{}{}", Module::Shade(self.program.clone()).name(), words(&list))
@@ -177,6 +181,7 @@ impl PipelineKey for ShadeKey {
                 ("EMITS", flag(self.emits)),
                 ("TEXELS_EMIT", flag(self.texels_emit)),
                 ("SECTIONS", flag(self.sections)),
+                ("FACADES", flag(self.facades)),
                 ("GROUND_FADES", flag(self.fades)),
                 ("BACKGROUND", f64::from(self.behind as u32)),
             ],

@@ -8,7 +8,6 @@ use crate::{
         eye::PictureTile,
         frame::FrameInput,
         layout,
-        lens_numbers::scale_and_shift,
         pass::context::{Board, FrameContext, Keys, Line, Pass, Preparing},
         placed_region::{PlacedLeaf, PlacedRegion},
         plan::FramePlan,
@@ -157,13 +156,14 @@ pub struct OnPage<'a> {
 
 /// What makes a sprite on pages of `page` texels: one stage for the region and one for each solid of a combination.
 fn stages_of(on: &OnPage, input: &FrameInput, page: [u32; 2]) -> Vec<layout::SpriteStage> {
-    let [scale, shift] = scale_and_shift(input, on.sprite, on.place);
+    let own = on.sprite.grid.shift(on.sprite.bounds.origin);
+    let shift: [f32; 2] = std::array::from_fn(|i| on.place.origin[i] as f32 + own[i]);
     // Texels count down the page, clip space up.
-    let clip_scale: [f32; 2] = std::array::from_fn(|i| on.sprite.size[i] as f32 / page[i] as f32);
+    let clip_scale = on.sprite.grid.clip_scale(page);
     let side = |i: usize| clip_scale[i] + 2.0 * shift[i] / page[i] as f32 - 1.0;
     let stage = |region, leaves| layout::SpriteStage {
         region,
-        pixels_per_texel: scale.map(|s| 1.0 / s),
+        pixels_per_texel: on.sprite.grid.pixels_per_texel(),
         origin: shift.map(|s| -s),
         clip_scale,
         clip_shift: [side(0), -side(1)],

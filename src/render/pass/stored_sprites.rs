@@ -223,14 +223,14 @@ impl StoredSprites {
         let picture_view = plan.view_uniform();
         let (mut lists, mut stages) = (Vec::new(), Vec::new());
         for (request, shape) in plan.requests.iter().zip(&plan.numbers.baked) {
-            let (own_view, uniform, target) = match &request.own {
-                None => (&input.view, picture_view, input.tile.size),
+            let (own_view, uniform) = match &request.own {
+                None => (&input.view, picture_view),
                 Some(own) => {
                     let uniform = view_uniform(own, PictureTile::whole(own.size), DVec2::ZERO, 0, 0.0);
-                    (own, uniform, own.size)
+                    (own, uniform)
                 }
             };
-            let stage = request.stage(*shape, uniform, target);
+            let stage = request.stage(*shape, uniform);
             let own = request.list_stages(own_view, &stage, list_size, self.crossing_room);
             lists.extend(own.iter().flat_map(placed));
             stages.extend(placed(&stage));
