@@ -27,6 +27,8 @@ mod pictures;
 mod scenes;
 #[path = "data/shadows.rs"]
 mod shadows;
+#[path = "data/standing.rs"]
+mod standing;
 mod studio;
 #[path = "data/walks.rs"]
 mod walks;
@@ -73,6 +75,7 @@ fn main() {
         pictures::trials(),
         scenes::trials(),
         shadows::trials(),
+        standing::trials(),
         walks::trials(),
     ];
     let trials = rooms.into_iter().flatten().collect();
