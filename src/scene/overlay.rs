@@ -118,7 +118,7 @@ impl BuiltInFrame {
 }
 
 /// Lines from an overlay to its points of interest. Lengths are pixels.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Default)]
 pub struct ContextLine {
     /// How it runs.
     pub kind: LineKind,
@@ -203,21 +203,6 @@ impl ContextLine {
     /// Its widths at the overlay and at the place in a picture, pixels.
     pub fn widths_in(&self, picture: [u32; 2]) -> [f64; 2] {
         [0, 1].map(|end| self.widths[end].unwrap_or(Self::WIDTHS[end] * scale_of(picture)))
-    }
-}
-
-impl Default for ContextLine {
-    fn default() -> Self {
-        Self {
-            kind: LineKind::default(),
-            color: None,
-            widths: [None; 2],
-            skin: None,
-            to: LineEnd::default(),
-            outside: Outside::default(),
-            arrow_distance_m: None,
-            fade: None,
-        }
     }
 }
 
@@ -357,7 +342,7 @@ impl Overlay {
 }
 
 /// How overlays are laid out.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Layout {
     /// Where they stand.
     pub along: Along,
@@ -385,18 +370,6 @@ impl Layout {
     /// The gap in a picture, whole pixels.
     pub fn gap_in(&self, picture: [u32; 2]) -> u32 {
         self.gap_px.unwrap_or(Self::GAP * scale_of(picture)).round() as u32
-    }
-}
-
-impl Default for Layout {
-    fn default() -> Self {
-        Self {
-            along: Along::default(),
-            sizes: Sizes::default(),
-            exploration_focus: false,
-            margin_px: None,
-            gap_px: None,
-        }
     }
 }
 

@@ -79,6 +79,8 @@ fn check(file: &Path) -> Result<(), Failed> {
             return Err(format!("{id}: {standing:?}, and {most} is seen from beside those eyes").into());
         }
     }
-    println!("{enough} with a third, {nowhere} nowhere, {slowest:.2} s at most; else seen, and from circles: {best:.2?}");
+    println!(
+        "{enough} with a third, {nowhere} nowhere, {slowest:.2} s at most; else seen, and from circles: {best:.2?}"
+    );
     if enough == 0 { Err("a third is seen of none".into()) } else { Ok(()) }
 }
