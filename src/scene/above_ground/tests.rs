@@ -12,7 +12,7 @@ use crate::{
 
 /// A slope to the east, with a step of 3 m at x = 50; none west of 0.
 fn slope(at: DVec2) -> Option<f64> {
-    (at.x >= 0.0).then(|| 0.1 * at.x + if at.x > 50.0 { 3.0 } else { 0.0 })
+    (at.x >= 0.0).then_some(0.1 * at.x + if at.x > 50.0 { 3.0 } else { 0.0 })
 }
 
 fn camera(eye: [f64; 3], target: [f64; 3]) -> Camera {
