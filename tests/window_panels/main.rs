@@ -676,7 +676,11 @@ fn what_the_window_shows_is_exported_and_copied() {
     assert!(written.as_raw() == drawn.rgba.as_flattened(), "the picture of the window, and its overlay");
     // The clipboard gets what is seen.
     until_drawn(&mut harness);
-    harness.key_press_modifiers(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::C);
+    // In one frame, whose output tells it.
+    let modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+    let (key, physical_key) = (Key::C, None);
+    harness.input_mut().modifiers = modifiers;
+    harness.input_mut().events.push(egui::Event::Key { key, physical_key, pressed: true, repeat: false, modifiers });
     harness.step();
     let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
         egui::OutputCommand::CopyImage(image) => Some(image.clone()),
