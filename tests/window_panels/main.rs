@@ -679,7 +679,6 @@ fn what_the_window_shows_is_exported_and_copied() {
     // In one frame, whose output tells it.
     let modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
     let (key, physical_key) = (Key::C, None);
-    harness.input_mut().modifiers = modifiers;
     harness.input_mut().events.push(egui::Event::Key { key, physical_key, pressed: true, repeat: false, modifiers });
     harness.step();
     let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
