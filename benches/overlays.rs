@@ -27,7 +27,7 @@ use veduta::{
     overlay::{self, Align, Arrangement, Focus, Layout, LineKind, Overlay, Rect, place},
     render::{
         furniture::Furniture,
-        picture::{Aovs, Request, Studio},
+        picture::{Request, Studio},
     },
     scene::{CitySpec, Scene},
     view::{Camera, View},

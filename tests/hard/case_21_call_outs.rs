@@ -10,7 +10,7 @@ use veduta::{
     },
     render::{
         frame::Backend,
-        picture::{Aovs, Picture, Request, Studio},
+        picture::{Picture, Request, Studio},
     },
     scene::Scene,
     view::{Camera, Projection},

@@ -9,7 +9,7 @@ use veduta::{
     },
     render::{
         frame::Backend,
-        picture::{Aovs, Picture, Request, Studio},
+        picture::{Picture, Request, Studio},
     },
     scene::Scene,
 };
