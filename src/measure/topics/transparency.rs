@@ -45,6 +45,9 @@ pub const TOPIC: Topic = Topic {
     make,
 };
 
+/// Of x-ray: layers that lie behind others are as dense as they, or methods that leave deep ones out would lose nothing.
+const EVERY_LAYER: Option<(&str, f64)> = Some(("behind", 1.0));
+
 /// A rule with a number.
 fn rule(effect: &str, number: Option<(&str, f64)>) -> EffectUse {
     EffectUse {
@@ -68,11 +71,11 @@ fn scenes(stage: &mut Stage<'_>) -> Result<Vec<(&'static str, Scene)>, RenderErr
     };
     let mut of_lens = plain.clone();
     let sphere = stage.sphere_covering(SHARE)?;
-    of_lens.lenses = vec![Lens { effects: vec![rule("x-ray", None)], ..lens("lens", sphere, &[]) }];
+    of_lens.lenses = vec![Lens { effects: vec![rule("x-ray", EVERY_LAYER)], ..lens("lens", sphere, &[]) }];
     Ok(vec![
         ("whole city", of_context(None, rule("transparent", Some(("opacity", 0.25))))),
         ("dense", of_context(None, rule("transparent", Some(("opacity", 0.7))))),
-        ("street", of_context(Some(low(stage.studio, 0.25, 1.7)), rule("x-ray", None))),
+        ("street", of_context(Some(low(stage.studio, 0.25, 1.7)), rule("x-ray", EVERY_LAYER))),
         ("many layers", of_context(Some(low(stage.studio, 0.75, 4.0)), rule("transparent", Some(("opacity", 0.05))))),
         ("lens", of_lens),
     ])
