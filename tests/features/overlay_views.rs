@@ -118,6 +118,39 @@ fn overlays_have_the_same_share_of_figures_of_all_sizes() {
 }
 
 #[test]
+fn words_have_room_in_small_figures() {
+    let mut studio = street();
+    let note = "[[lens]]\nname = \"note\"\nkind = \"annotation\"\npoi = \"long\"\ntext = \"The long house\"\n";
+    let view = "[[lens]]\nname = \"view\"\nkind = \"best-view\"\npoi = \"long\"\n[[overlay]]\nlens = \"view\"\ncaption = \"The long house\"\n";
+    let scene = parsed(&format!("{EYE}{LONG}{note}{view}"));
+    // Ten pixels are an em: a card has 14 of them, less its rim; the other as many as its caption takes.
+    let small = drawn(&mut studio, &scene, [320, 200]).overlays;
+    assert_eq!(small[0].size[0], 134, "{small:?}");
+    assert!((70..110).contains(&small[1].size[0]), "{small:?}");
+    let large = drawn(&mut studio, &scene, [1280, 720]).overlays;
+    assert!(large[0].size[0] == 232 && (220..=240).contains(&large[1].size[0]), "{large:?}");
+}
+
+#[test]
+fn a_map_shows_the_city_wherever_the_eye_is() {
+    let mut studio = street();
+    let mut map = |eye: [f64; 2]| {
+        let rest = format!(
+            "[camera]\neye = [{}, {}, 60]\ntarget = [0, 20, 0]\n[[lens]]\nname = \"map\"\nkind = \"map-view\"\nview = {{ mode = \"user-view\", height_m = 200 }}\n\
+             [[overlay]]\nlens = \"map\"\nsize = [300, 200]\nframe = \"none\"\n",
+            eye[0], eye[1]
+        );
+        part(&drawn(&mut studio, &parsed(&rest), [640, 360]), 0).0
+    };
+    for eye in [[0.0, 0.0], [0.0, -900.0], [800.0, 700.0]] {
+        let texels = map(eye);
+        let built = texels.iter().filter(|[r, g, b, _]| r > g && i32::from(*r) - i32::from(*b) > 45).count();
+        let needle = texels.iter().filter(|[r, g, b, _]| *r > 180 && *g < 80 && *b < 80).count();
+        assert!(built > 200 && needle > 20, "{eye:?}: {built} texels of buildings, {needle} of the sign of the eye");
+    }
+}
+
+#[test]
 fn outlines_of_objects_are_drawn_with_their_notches() {
     let mut studio = boxes("overlay-area", &[([-20, 0, 0], [40, 6, 4]), ([-20, 6, 0], [6, 30, 4])], false, true);
     let scene = |to: &str| {

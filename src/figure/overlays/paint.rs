@@ -26,6 +26,9 @@ const WHITE: Srgb = [1.0; 3];
 const INK: Srgb = [0.1, 0.115, 0.14];
 const NEEDLE: Srgb = [0.84, 0.15, 0.16];
 
+/// The size of captions.
+const CAPTION_EMS: f32 = 0.92;
+
 /// What an image of an overlay is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
@@ -122,6 +125,12 @@ impl Card {
     }
 }
 
+/// The width of a caption with its margins, pixels.
+pub fn caption_width(caption: &str, em: f32) -> f32 {
+    let style = TextStyle { size_px: CAPTION_EMS * em, weight: Weight::Regular, tabular: false };
+    Typesetter::default().width(caption, style) + 2.0 * em
+}
+
 /// The height of an overlay of this width that holds all of a text, whole pixels.
 pub fn text_height(text: &str, width: u32, em: f32) -> u32 {
     let card = Card::new(em);
@@ -129,6 +138,8 @@ pub fn text_height(text: &str, width: u32, em: f32) -> u32 {
     (2.0 * card.pad + card.line * lines.len() as f32).ceil() as u32
 }
 
+/// The part of the way from the middle of a map to its border where the sign of the eye is at most.
+const AT_BORDER: f64 = 0.9;
 /// A caption for which there is no room becomes so much smaller at most, as a part of its size.
 const LEAST_CAPTION: f32 = 0.6;
 /// Lines of text that are counted; no overlay shows more.
@@ -160,7 +171,7 @@ impl Painter {
     }
 
     fn caption_style(&self) -> TextStyle {
-        TextStyle { size_px: 0.92 * self.em, weight: Weight::Regular, tabular: false }
+        TextStyle { size_px: CAPTION_EMS * self.em, weight: Weight::Regular, tabular: false }
     }
 
     fn panel(&mut self, low: [f32; 2], high: [f32; 2], color: Srgb, opacity: f32, radius_px: f32, softness_px: f32) {
@@ -421,7 +432,14 @@ impl Painter {
                 let reach = half * if is_ellipse(overlay) { 1.0 } else { std::f64::consts::SQRT_2 };
                 let from_middle = main.eye.truncate() - local.middle.unwrap_or(main.eye.truncate());
                 let place = on_page(from_middle) * (2.0 * half.y / height_m);
-                let at = DVec2::from(low) + half + local::fisheye(place / reach, *magnification) * reach;
+                let mut place = local::fisheye(place / reach, *magnification) * reach;
+                // An eye that is beyond the map is at its border.
+                let out =
+                    if is_ellipse(overlay) { (place / half).length() } else { (place / half).abs().max_element() };
+                if out > AT_BORDER {
+                    place *= AT_BORDER / out;
+                }
+                let at = DVec2::from(low) + half + place;
                 let ahead = on_page(heading);
                 self.arrow(at + f64::from(self.px(9.0)) * ahead, ahead, NEEDLE);
             }

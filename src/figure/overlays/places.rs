@@ -3,7 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use crate::{
-    figure::overlays::words,
+    figure::{
+        furniture::em_px,
+        overlays::{paint, words},
+    },
     geom::{exact::twice_area, outline},
     lens::{
         BestView, Lens, Placement,
@@ -84,8 +87,34 @@ pub(super) fn seen(studio: &Studio, scene: &Scene, view: &View, index: usize, le
     let to_area = overlay.line.as_ref().is_some_and(|line| line.to == LineEnd::Area);
     let pois = best_view.pois.iter().filter_map(|name| scene.pois.iter().find(|poi| poi.name == *name));
     let places = pois.filter_map(|poi| place(studio, scene, view, poi, to_area)).collect();
-    let size = overlay.size_in(view.size);
+    let size = size_of(scene, view, &overlay, &best_view);
     Some(Shown { index, name: lens.name.clone(), color: lens.color, best_view, overlay, size, places })
+}
+
+/// Text of a card that has no size of its own has so many ems of room beside each other, where the picture is so small that a share of it has less.
+const CARD_EMS: f32 = 14.0;
+/// What words make an overlay larger to, as a part of the picture's width and height.
+const MOST_FOR_WORDS: f64 = 0.45;
+
+/// The preferred size of an overlay, pixels: that of its scene, but that one which goes by a share of a small picture has room for its words.
+fn size_of(scene: &Scene, view: &View, overlay: &Overlay, shown: &BestView) -> [u32; 2] {
+    let size = overlay.size_in(view.size);
+    if overlay.size.is_some() {
+        return size;
+    }
+    let em = em_px(&scene.figure, view.size);
+    let most = view.size.map(|side| (MOST_FOR_WORDS * f64::from(side)) as u32);
+    match &shown.depiction {
+        Depiction::Text(text) => {
+            let width = size[0].max(most[0].min((CARD_EMS * em) as u32));
+            [width, size[1].max(most[1].min(paint::text_height(text, width, em)))]
+        }
+        Depiction::Image(_) | Depiction::View(_) => {
+            let caption = overlay.caption.as_ref().map_or(0.0, |caption| paint::caption_width(caption, em));
+            let width = size[0].max(most[0].min(caption.ceil() as u32));
+            [width, (f64::from(width) / Overlay::ASPECT).round() as u32]
+        }
+    }
 }
 
 /// A point of interest of a view; `None`: it is nowhere.

@@ -132,7 +132,7 @@ pub fn local(
         }
         LocalView::Map { mode, height_m, lazy, .. } => {
             let heading = if *mode == MapMode::HeadUp { local::heading(main) } else { DVec2::Y };
-            let eye = main.eye.truncate();
+            let eye = over_city(studio, main.eye.truncate());
             let middle =
                 tracked.map_or(eye, |before| local::followed(before, eye, 0.5 * lazy * height_m * aspect.min(1.0)));
             own.middle = Some(middle);
@@ -213,6 +213,12 @@ fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
         own.style = Style { look: look.look, base, effects, background, ..own.style };
     }
     own
+}
+
+/// The place of a city that is nearest to one in plan, so that a map of what is around it shows some of the city.
+fn over_city(studio: &Studio, at: DVec2) -> DVec2 {
+    let extent = studio.extent();
+    if extent.is_empty() { at } else { at.clamp(extent.min.truncate(), extent.max.truncate()) }
 }
 
 /// Has a scene look as a map does that says nothing of its look: flat colours, and buildings filled, unless the scene colours what it shows itself.
