@@ -29,9 +29,11 @@
 //! range = [0, 8]
 //! default = 0.75
 //! unit = "points"
-//! doc = "How wide they are: whole pixels, on average over several samples so wide; what is less than one is fainter."
+//! doc = "How wide they are: whole pixels, at most 64, on average over several samples so wide; what is less than one is fainter."
 
 const GOLDEN_SHARE: f32 = 0.618034;
+// As far as tiles of a large figure know what lies beside them.
+const MOST_REACH: i32 = 64;
 
 fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     if point.surface == NO_SURFACE {
@@ -43,7 +45,7 @@ fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
         return color;
     }
     // Widths between whole pixels are had by some samples and not by others.
-    let reach = max(i32(floor(p.width + fract(0.5 + GOLDEN_SHARE * f32(view.sample_index)))), 1);
+    let reach = clamp(i32(floor(p.width + fract(0.5 + GOLDEN_SHARE * f32(view.sample_index)))), 1, MOST_REACH);
     var line = max(across(point, vec2i(reach, 0), p.creases), across(point, vec2i(0, reach), p.creases));
     if reach > 1 {
         let aslant = i32(round(0.7071 * f32(reach)));
