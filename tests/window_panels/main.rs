@@ -610,7 +610,8 @@ fn a_level_of_detail_and_more_files_are_edits_that_load_again() {
 fn a_figure_is_shown_as_it_will_be() {
     let mut harness = window();
     let text = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n[camera]\neye = [14, -112, 35]\ntarget = [-30, -14, 5]\n[[poi]]\nname = \"p\"\n\
-                object = \"church\"\n[[lens]]\nname = \"v\"\nkind = \"best-view\"\npoi = \"p\"\n[figure]\nsize = [2000, 1000]\ntitle = \"A title\"\n";
+                object = \"church\"\n[[lens]]\nname = \"v\"\nkind = \"best-view\"\npoi = \"p\"\n\
+                [[overlay]]\nlens = \"v\"\nsize = [240, 160]\n[figure]\nsize = [2000, 1000]\ntitle = \"A title\"\n";
     let scene = parse(text, "preview", &Options::for_command_line()).unwrap_or_else(|error| panic!("{error}"));
     harness.state_mut().document.edit("the scene", |own| *own = scene.clone());
     until_drawn(&mut harness);
