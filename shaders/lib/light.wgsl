@@ -99,6 +99,9 @@ fn see_sky_in_picture(pixel: vec2i, relative: vec3f, normal: vec3f) {
     let place = view.view_from_world * relative;
     let pixel_m = abs(2.0 / (view.projection.y * view.size.y)) * select(-place.z, 1.0, view.orthographic == 1u);
     let width = 1.0 / (0.1 + 2.0 * pixel_m);
+    // How far a texel's place is off the plane: from pixel to pixel it changes evenly.
+    let room = dot(across, place);
+    let step = across.xy * view.across_from_pixel.xy;
     let most = vec2i(textureDimensions(sky_in_picture)) - 1;
     let first = (pixel - 1) >> vec2u(1u);
     var sum = 0.0;
@@ -106,9 +109,9 @@ fn see_sky_in_picture(pixel: vec2i, relative: vec3f, normal: vec3f) {
     for (var i = 0; i < 4; i++) {
         let texel = clamp(first + vec2i(i & 1, i >> 1), vec2i(0), most);
         let seen = textureLoad(sky_in_picture, texel, 0).xy;
-        let ray = ray_of_pixel(vec2f(min(texel * 2, vec2i(view.size) - 1)) + 0.5);
-        let other = ray.origin + distance_of_depth(max(seen.y, 1e-30)) * ray.direction;
-        let off = abs(dot(across, other - place));
+        let distance = distance_of_depth(max(seen.y, 1e-30));
+        let aside = dot(vec2f(min(texel * 2, vec2i(view.size) - 1) - pixel), step);
+        let off = abs(select(distance * (aside - room / place.z) - room, aside - across.z * (distance + place.z), view.orthographic == 1u));
         let weight = select(0.0, max(1.0 - off * width, 0.0), seen.y > 0.0) + 1e-4;
         sum += weight * seen.x;
         weights += weight;

@@ -15,8 +15,8 @@ override SMOOTH: bool = false;      // whether normals are in the target, not wi
 const PI: f32 = 3.14159265;
 const HALF_PI: f32 = 1.57079633;
 
-const SLICES: i32 = 2;
-const STEPS: i32 = 6;
+const SLICES: i32 = 1;
+const STEPS: i32 = 5;
 // How far things count, metres; from the first share of it on less and less.
 const FARTHEST_M: f32 = 60.0;
 const FULL: f32 = 0.6;
