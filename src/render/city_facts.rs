@@ -66,19 +66,6 @@ pub(super) struct CityFacts<'a> {
     pub contents: Vec<ContentFacts<'a>>,
 }
 
-/// How far shadows on the plain ground are followed, metres: of a low sun they end nowhere.
-const LONGEST_SHADOW_M: f64 = 400.0;
-
-/// Where a box throws its shadow on level ground at this height, towards a light in this direction.
-fn shadow_on_ground(bounds: &Aabb, to_light: DVec3, ground: f64) -> Aabb {
-    let height = (bounds.max.z - ground).max(0.0);
-    let away = -to_light.truncate() * (height / to_light.z.max(1e-3));
-    let away = away.clamp_length_max(LONGEST_SHADOW_M);
-    let moved = Aabb { min: bounds.min + away.extend(0.0), max: bounds.max + away.extend(0.0) };
-    let both = bounds.union(moved);
-    Aabb { min: both.min.with_z(ground), max: both.max.with_z(ground) }
-}
-
 impl CityFacts<'_> {
     /// Whether some section has a texture.
     pub fn is_textured(&self) -> bool {
@@ -144,16 +131,6 @@ impl CityFacts<'_> {
         let (of_contents, all) = contents(&frustum);
         seen.extend(of_contents);
         seen.extend(Some(self.moved).filter(|bounds| frustum.meets(bounds)));
-        if size.onto_ground && self.fade.is_some() {
-            let casters =
-                self.chunks.iter().copied().flatten().filter(|c| !c.is_around && c.details & Detail::Full.bit() != 0);
-            let shadows = casters.map(|c| shadow_on_ground(&c.bounds, direction, self.bounds.min.z));
-            let is_beside = |shadow: &Aabb| {
-                let [low, high] = [shadow.min, shadow.max].map(DVec3::truncate);
-                low.cmplt(self.bounds.min.truncate()).any() || high.cmpgt(self.bounds.max.truncate()).any()
-            };
-            seen.extend(shadows.filter(|shadow| is_beside(shadow) && frustum.meets(shadow)));
-        }
         let casters = self.bounds.union(all).union(self.moved);
         SunEye::new(view, direction, &seen, &casters, size)
     }

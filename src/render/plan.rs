@@ -134,17 +134,17 @@ impl<'a> FramePlan<'a> {
         let empty = empty_lenses(input, facts);
         let seen = seen_volumes(input, &facts.all, own_sprites.room(), &idle_lenses(&empty, input));
         let of_contents = |frustum: &Frustum| facts.content_bounds(input, frustum);
-        let map = |direction: DVec3, towards: DVec3, texel_px: f64, onto_ground: bool| {
-            let size = MapSize { most: settings.shadow_size, texel_px, towards, onto_ground };
+        let map = |direction: DVec3, towards: DVec3, texel_px: f64| {
+            let size = MapSize { most: settings.shadow_size, texel_px, towards };
             facts.light_eye(&input.view, direction, &size, of_contents)
         };
         let (middle, texel_px) = (light::to_sun(&input.sun), if input.is_summed() { SUN_TEXEL_PX } else { 0.0 });
         let has_sun = light::casts_shadows(&input.sun);
         let is_near =
-            input.is_summed() && has_sun && map(middle, middle, texel_px, true).is_some_and(|eye| eye.levels.len() > 1);
+            input.is_summed() && has_sun && map(middle, middle, texel_px).is_some_and(|eye| eye.levels.len() > 1);
         let light = LightSample::new(&input.sun, input.sample, input.samples, is_near);
-        let sun = has_sun.then(|| map(light.to_sun, middle, texel_px, true)).flatten();
-        let sky = light.sky.and_then(|sky| map(sky.to, DVec3::Z, SKY_TEXEL_PX, false));
+        let sun = has_sun.then(|| map(light.to_sun, middle, texel_px)).flatten();
+        let sky = light.sky.and_then(|sky| map(sky.to, DVec3::Z, SKY_TEXEL_PX));
         let lit = match (&sun, &sky) {
             // One program for all samples.
             (_, Some(_)) => Lit::FromEverywhere,

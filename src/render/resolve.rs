@@ -203,7 +203,7 @@ impl Surroundings<'_> {
         // The coarsest map looks farthest beyond its edge.
         let map = |facts: &CityFacts| {
             let direction = to_sun(&scene.sun);
-            let size = MapSize { most: LEAST_SHADOW_SIZE, texel_px: 0.0, towards: direction, onto_ground: true };
+            let size = MapSize { most: LEAST_SHADOW_SIZE, texel_px: 0.0, towards: direction };
             facts.light_eye(view, direction, &size, |_| (Vec::new(), Aabb::EMPTY))
         };
         let sun = self.facts.as_ref().filter(|_| casts_shadows(&scene.sun)).and_then(map);

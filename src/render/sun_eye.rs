@@ -57,8 +57,6 @@ pub struct MapSize {
     pub texel_px: f64,
     /// The direction that decides it, for all samples of a picture alike: unit, towards the light.
     pub towards: DVec3,
-    /// Whether shadows on the plain ground beside the city count.
-    pub onto_ground: bool,
 }
 
 /// The sun's eye on what a picture shows.
@@ -408,13 +406,7 @@ mod tests {
 
     /// With the whole map.
     fn of_size(view: &View, direction: DVec3, seen: &[Aabb], casters: &Aabb, size: u32) -> Option<SunEye> {
-        SunEye::new(
-            view,
-            direction,
-            seen,
-            casters,
-            &MapSize { most: size, texel_px: 0.0, towards: direction, onto_ground: false },
-        )
+        SunEye::new(view, direction, seen, casters, &MapSize { most: size, texel_px: 0.0, towards: direction })
     }
 
     fn town() -> (Vec<Aabb>, Aabb) {
