@@ -50,13 +50,14 @@ impl Frames {
 }
 
 fn main() {
-    let (mut pairs, mut only) = (21, None);
+    let (mut pairs, mut only, mut passes) = (21, None, false);
     let mut arguments = std::env::args().skip(1).filter(|a| a != "--bench");
     while let Some(argument) = arguments.next() {
         match (argument.as_str(), arguments.next()) {
             ("--pairs", Some(n)) => pairs = n.parse().expect("--pairs wants a number"),
             ("--only", name @ Some(_)) => only = name,
-            _ => panic!("{argument} is neither --pairs N nor --only NAME"),
+            ("--passes", Some(word)) => passes = word == "yes",
+            _ => panic!("{argument} is neither --pairs N nor --only NAME nor --passes yes"),
         }
     }
     let file = bench_city::written(bench_city::BENCH_BUILDINGS);
@@ -91,7 +92,11 @@ fn main() {
             let samples = if name.ends_with("sixteen") { 16 } else { 1 };
             let request = Request { samples, screen_occlusion: true, ..Request::plain(SIZE) };
             let plain = Frames { studio: 0, scenes: vec![plain_scene(camera)], request: Request::plain(SIZE), next: 0 };
-            compare(&mut studios, pairs, &name, [Frames { studio, scenes, request, next: 0 }, plain], target);
+            let frames = Frames { studio, scenes, request, next: 0 };
+            if passes {
+                print_passes(&mut studios[studio], &frames);
+            }
+            compare(&mut studios, pairs, &name, [frames, plain], target);
         }
     }
 }
@@ -111,6 +116,30 @@ fn moved(scene: &Scene, step: u32) -> Scene {
         center.x += f64::from(step);
     }
     scene
+}
+
+/// Draws the first two scenes measured, and prints what the passes of the second cost: what is held from one frame to the next is left out as it is
+/// in a window.
+fn print_passes(studio: &mut Studio, frames: &Frames) {
+    let request = Request { statistics: true, ..frames.request.clone() };
+    let mut draw = |i: usize| {
+        let scene = &frames.scenes[i % frames.scenes.len()];
+        studio.render(scene, &request).unwrap_or_else(|error| panic!("{error}")).statistics
+    };
+    draw(0);
+    let statistics = draw(1);
+    let mut sums: Vec<(String, u32, u64, f64)> = Vec::new();
+    for pass in statistics.passes {
+        let at = sums.iter().position(|sum| sum.0 == pass.name).unwrap_or_else(|| {
+            sums.push((pass.name.clone(), 0, 0, 0.0));
+            sums.len() - 1
+        });
+        let sum = &mut sums[at];
+        *sum = (pass.name, sum.1 + 1, sum.2 + pass.triangles, sum.3 + pass.gpu_ms.unwrap_or(f64::NAN));
+    }
+    for (name, times, triangles, ms) in sums {
+        println!("    {name:<20} {times:>3} x {triangles:>10} triangles {ms:>9.1} ms");
+    }
 }
 
 /// Draws A and B in turn and prints the median of A/B with its 95 % interval.

@@ -5,8 +5,6 @@
 
 fn effect(pixel: vec2f) -> Ray {
     let across = pixel * view.across_from_pixel.xy + view.across_from_pixel.zw;
-    if view.orthographic == 1u {
-        return Ray(vec3f(across, 0.0), vec3f(0.0, 0.0, -1.0));
-    }
-    return Ray(vec3f(0.0), vec3f(across, -1.0));
+    let is_flat = view.orthographic == 1u;
+    return Ray(vec3f(select(vec2f(0.0), across, is_flat), 0.0), vec3f(select(across, vec2f(0.0), is_flat), -1.0));
 }

@@ -103,12 +103,10 @@ fn edge_in_picture(p: vec3f) -> vec3f {
 fn depth_slope(normal: vec3f, p: vec3f) -> vec2f {
     let per_ndc = 1.0 / view.projection.xy;
     let per_px = 2.0 / view.size * per_ndc;
-    if view.orthographic == 1u {
-        let lean = select(min(normal.z, -1e-6), max(normal.z, 1e-6), normal.z >= 0.0);
-        return -normal.xy / (lean * (view.far - view.near)) * per_px;
-    }
-    let room = dot(normal, p);
-    return view.near * normal.xy / select(min(room, -1e-6), max(room, 1e-6), room >= 0.0) * per_px;
+    let is_flat = view.orthographic == 1u;
+    let lean = select(dot(normal, p), normal.z, is_flat);
+    let per_room = normal.xy / select(min(lean, -1e-6), max(lean, 1e-6), lean >= 0.0);
+    return per_room * select(view.near, -1.0 / (view.far - view.near), is_flat) * per_px;
 }
 
 // What a length in a plane is multiplied with to become affine in the picture: stored depth, in perspective.
@@ -157,12 +155,9 @@ fn edge_face(normal: vec3f, p: vec3f, q: vec3f, middle: vec3f, left: vec2f, turn
     let rise = dot(depth_slope(normal, middle), left);
     // A ray one pixel to the left, and what it gains on the plane along both axes, from p on.
     let ray = left * 2.0 / view.size / view.projection.xy;
-    var gain = vec2f(dot(ray, inward.xy), dot(ray, forward.xy));
-    if view.orthographic == 1u {
-        gain += vec2f(inward.z, forward.z) * rise * (view.far - view.near);
-    } else {
-        gain = gain * view.near - vec2f(dot(p, inward), dot(p, forward)) * rise;
-    }
+    let is_flat = view.orthographic == 1u;
+    let lean = select(-vec2f(dot(p, inward), dot(p, forward)), vec2f(inward.z, forward.z) * (view.far - view.near), is_flat);
+    let gain = vec2f(dot(ray, inward.xy), dot(ray, forward.xy)) * select(view.near, 1.0, is_flat) + lean * rise;
     return vec4f(rise, gain / size, extent / size);
 }
 

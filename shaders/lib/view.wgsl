@@ -50,16 +50,10 @@ struct Ray {
 
 // Stored depth of distance D: reversed, 1 at the near plane, 0 at the far end.
 fn depth_of_distance(distance: f32) -> f32 {
-    if view.orthographic == 1u {
-        return clamp((view.far - distance) / (view.far - view.near), 0.0, 1.0);
-    }
-    return clamp(view.near / distance, 0.0, 1.0);
+    return clamp(select(view.near / distance, (view.far - distance) / (view.far - view.near), view.orthographic == 1u), 0.0, 1.0);
 }
 
 // Distance of a stored depth, which must not be 0 (nothing there).
 fn distance_of_depth(depth: f32) -> f32 {
-    if view.orthographic == 1u {
-        return view.far - depth * (view.far - view.near);
-    }
-    return view.near / depth;
+    return select(view.near / depth, view.far - depth * (view.far - view.near), view.orthographic == 1u);
 }

@@ -4,6 +4,8 @@ use std::{
     sync::{Mutex, PoisonError},
 };
 
+use wgpu::naga;
+
 use super::*;
 use crate::{geom::shape::VolumeForm, seeds::is_thorough};
 
@@ -241,18 +243,78 @@ fn validate_text(name: &str, source: &str) {
         return;
     }
     assert!(!source.contains("//@") && !source.contains("/*@"), "{name}: a hook is left");
-    let parsed = match wgpu::naga::front::wgsl::parse_str(source) {
+    let parsed = match naga::front::wgsl::parse_str(source) {
         Ok(parsed) => parsed,
         Err(error) => panic!("{name}: {}", error.emit_to_string(source)),
     };
-    let mut validator = wgpu::naga::valid::Validator::new(
-        wgpu::naga::valid::ValidationFlags::all(),
-        wgpu::naga::valid::Capabilities::default()
-            | wgpu::naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32
-            | wgpu::naga::valid::Capabilities::EARLY_DEPTH_TEST,
+    let mut validator = naga::valid::Validator::new(
+        naga::valid::ValidationFlags::all(),
+        naga::valid::Capabilities::default()
+            | naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32
+            | naga::valid::Capabilities::EARLY_DEPTH_TEST,
     );
     if let Err(error) = validator.validate(&parsed) {
         panic!("{name}: {}", error.emit_to_string(source));
+    }
+    let functions = parsed.functions.iter().map(|(_, function)| function);
+    for function in functions.chain(parsed.entry_points.iter().map(|entry| &entry.function)) {
+        if let Some(span) = branch_on_uniforms(&parsed, function, &function.body) {
+            let line = span.location(source).line_number;
+            panic!("{name}, line {line}: a branch on nothing but uniforms, for which Mesa's software driver compiles anew in each frame; use select()");
+        }
+    }
+}
+
+/// Where a block goes one way or another by uniforms and constants alone.
+fn branch_on_uniforms(module: &naga::Module, function: &naga::Function, block: &naga::Block) -> Option<naga::Span> {
+    use naga::Statement as S;
+    let is_decided = |condition: naga::Handle<naga::Expression>| leaves(module, function, condition) == [false, true];
+    block.span_iter().find_map(|(statement, span)| {
+        let (conditions, blocks): (Vec<_>, Vec<&naga::Block>) = match statement {
+            S::Block(inner) => (vec![], vec![inner]),
+            S::If { condition, accept, reject } => (vec![*condition], vec![accept, reject]),
+            S::Switch { selector, cases } => (vec![*selector], cases.iter().map(|case| &case.body).collect()),
+            S::Loop { body, continuing, break_if } => (break_if.iter().copied().collect(), vec![body, continuing]),
+            _ => return None,
+        };
+        if conditions.into_iter().any(is_decided) {
+            return Some(*span);
+        }
+        blocks.into_iter().find_map(|inner| branch_on_uniforms(module, function, inner))
+    })
+}
+
+/// Whether an expression depends on anything but uniforms and constants; whether on a uniform.
+fn leaves(module: &naga::Module, function: &naga::Function, of: naga::Handle<naga::Expression>) -> [bool; 2] {
+    use naga::Expression as E;
+    let all = |parts: &[naga::Handle<naga::Expression>]| {
+        let each = parts.iter().map(|part| leaves(module, function, *part));
+        each.fold([false; 2], |[a, b], [c, d]| [a | c, b | d])
+    };
+    match &function.expressions[of] {
+        E::Literal(_) | E::Constant(_) | E::Override(_) | E::ZeroValue(_) => [false; 2],
+        E::GlobalVariable(global) => {
+            let global = &module.global_variables[*global];
+            let is_of_frame = matches!(global.name.as_deref(), Some("view" | "light" | "eye" | "refinement"));
+            let is_of_frame = is_of_frame && global.space == naga::AddressSpace::Uniform;
+            [!is_of_frame, is_of_frame]
+        }
+        E::Load { pointer: part }
+        | E::AccessIndex { base: part, .. }
+        | E::Splat { value: part, .. }
+        | E::Swizzle { vector: part, .. }
+        | E::Unary { expr: part, .. }
+        | E::Relational { argument: part, .. }
+        | E::As { expr: part, .. } => all(&[*part]),
+        E::Access { base, index } => all(&[*base, *index]),
+        E::Binary { left, right, .. } => all(&[*left, *right]),
+        E::Select { condition, accept, reject } => all(&[*condition, *accept, *reject]),
+        E::Compose { components, .. } => all(components),
+        E::Math { arg, arg1, arg2, arg3, .. } => {
+            let parts: Vec<_> = [Some(*arg), *arg1, *arg2, *arg3].into_iter().flatten().collect();
+            all(&parts)
+        }
+        _ => [true, false],
     }
 }
 
