@@ -63,6 +63,7 @@ fn main() {
     let gpu = Gpu::open().unwrap_or_else(|error| panic!("{error}"));
     println!("adapter {}, {pairs} pairs, {}x{}", gpu.name(), SIZE[0], SIZE[1]);
     let mut studio = Studio::new(gpu, Arc::new(model), &spec).unwrap_or_else(|error| panic!("{error}"));
+    studio.renderer.settings.holds_geometry = false;
     let extent = studio.extent();
     if let Some(name) = profile {
         let (_, steps) = STEPS.iter().find(|(own, _)| *own == name).expect("--profile names a row");

@@ -60,6 +60,7 @@ fn main() {
     let gpu = Gpu::open().unwrap_or_else(|error| panic!("{error}"));
     println!("adapter {}, {pairs} pairs, {}x{}", gpu.name(), SIZE[0], SIZE[1]);
     let mut studio = Studio::new(gpu, Arc::new(model), &spec).unwrap_or_else(|error| panic!("{error}"));
+    studio.renderer.settings.holds_geometry = false;
     println!("{} triangles", studio.renderer.city().map_or(0, |c| c.triangles));
     let mut frames = Vec::new();
     let over = overview(&studio.extent(), SIZE).unwrap_or_else(|error| panic!("{error}"));

@@ -57,7 +57,11 @@ fn main() {
         "layout / plain frame", "ms", "frame ms", "ratio (95 % interval)", "target"
     );
     let model = Arc::new(model);
-    let studio = |gpu| Studio::new(gpu, Arc::clone(&model), &spec).unwrap_or_else(|error| panic!("{error}"));
+    let studio = |gpu| {
+        let mut studio = Studio::new(gpu, Arc::clone(&model), &spec).unwrap_or_else(|error| panic!("{error}"));
+        studio.renderer.settings.holds_geometry = false;
+        studio
+    };
     let mut plain = studio(gpu);
     let is_asked = |part: &str| only.as_deref().is_none_or(|only| only == part);
     if is_asked("labels") {

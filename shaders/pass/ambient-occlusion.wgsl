@@ -16,7 +16,7 @@ const PI: f32 = 3.14159265;
 const HALF_PI: f32 = 1.57079633;
 
 const SLICES: i32 = 1;
-const STEPS: i32 = 5;
+const STEPS: i32 = 4;
 // How far things count, metres; from the first share of it on less and less.
 const FARTHEST_M: f32 = 60.0;
 const FULL: f32 = 0.6;
@@ -38,17 +38,13 @@ fn integral(angle: f32, n: f32) -> f32 {
     return sign(angle) * 0.25 * (cos(n) + 2.0 * angle * sin(n) - cos(2.0 * angle - n));
 }
 
-// The same between two angles, above the ground's horizon: within a right angle of `zenith`.
+// The same between two angles before the face, above the ground's horizon: within a right angle of `zenith`. Angles go around; of two such half
+// circles what is in both is in one piece.
 fn of_sky(low: f32, high: f32, n: f32, zenith: f32) -> f32 {
-    var sum = 0.0;
-    // Angles go around: the sky may begin at either end.
-    for (var i = 0; i < 3; i++) {
-        let middle = zenith + (f32(i) - 1.0) * 2.0 * PI;
-        let a = clamp(middle - HALF_PI, low, high);
-        let b = clamp(middle + HALF_PI, low, high);
-        sum += max(integral(b, n) - integral(a, n), 0.0);
-    }
-    return sum;
+    let middle = zenith - 2.0 * PI * round((zenith - n) / (2.0 * PI));
+    let a = clamp(middle - HALF_PI, low, high);
+    let b = clamp(middle + HALF_PI, low, high);
+    return max(integral(b, n) - integral(a, n), 0.0);
 }
 
 // The cosine of the horizon on one side, from the ray to the eye; at least `least`.
@@ -62,9 +58,10 @@ fn horizon(pixel: vec2i, at: vec3f, to_eye: vec3f, way: vec2f, first: f32, least
         let depth = textureLoad(scene_depth, clamp(seen, vec2i(0), most), 0);
         let is_known = depth > 0.0 && all(seen >= vec2i(0)) && all(seen <= most);
         let step = place(seen, select(0.5, depth, is_known)) - at;
-        let far = length(step);
-        let height = dot(step, to_eye) / max(far, 1e-6);
-        let weight = clamp((1.0 - far / FARTHEST_M) / (1.0 - FULL), 0.0, 1.0);
+        let squared = max(dot(step, step), 1e-12);
+        let per_far = inverseSqrt(squared);
+        let height = dot(step, to_eye) * per_far;
+        let weight = clamp((1.0 - squared * per_far / FARTHEST_M) / (1.0 - FULL), 0.0, 1.0);
         highest = max(highest, select(least, mix(least, height, weight), is_known));
     }
     return highest;

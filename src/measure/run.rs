@@ -199,6 +199,7 @@ fn adapter(gpu: &Gpu) -> stats::Adapter {
 /// Draws a picture to its end without AOVs and without reading it back; milliseconds.
 fn timed(studio: &mut Studio, shot: &Shot) -> Result<f64, RenderError> {
     let request = Request { aovs: Aovs::default(), statistics: false, ..shot.request };
+    studio.renderer.settings.holds_geometry = false;
     let start = Instant::now();
     studio.draw(&shot.scene, &request)?;
     studio.renderer.gpu.wait()?;

@@ -401,9 +401,9 @@ impl Studio {
         Ok(timer.read(&self.renderer.gpu)?.iter().map(|pass| pass.gpu_ms).sum())
     }
 
-    /// Draws all samples of a picture that fits one target, without reading anything back.
-    pub fn draw(&mut self, scene: &Scene, request: &Request) -> Result<(), RenderError> {
-        self.draw_with(scene, request, &furniture::NONE, None).map(|_| ())
+    /// Draws all samples of a picture that fits one target, without reading anything back; the passes that ran.
+    pub fn draw(&mut self, scene: &Scene, request: &Request) -> Result<Vec<stats::Pass>, RenderError> {
+        self.draw_with(scene, request, &furniture::NONE, None)
     }
 
     /// Draws all samples of a picture, part by part where it is large, and gives `after` the renderer after each; the passes that ran.

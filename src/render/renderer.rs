@@ -22,7 +22,7 @@ use crate::{
         parts::Tiling,
         pass::{
             Inputs,
-            context::{FrameContext, Preparing},
+            context::{FrameContext, Pass as _, Preparing},
         },
         plan::{Adapter, FramePlan, Stayed},
         resource::{
@@ -152,9 +152,10 @@ impl Renderer {
         self.view.targets.as_ref()
     }
 
-    /// Starts counting pipelines anew.
+    /// Starts counting pipelines anew; the first frame draws the city, whatever the targets hold.
     pub fn begin_picture(&mut self) {
         self.pipelines.begin_picture();
+        self.view.passes.geometry.forget();
         self.ran.clear();
     }
 
@@ -188,6 +189,7 @@ impl Renderer {
         if drawn.is_err() {
             // What was to be made may not be there.
             self.view.own_sprites.forget();
+            self.view.passes.forget();
         }
         drawn
     }
@@ -238,6 +240,7 @@ impl Renderer {
         else {
             return;
         };
+        self.view.passes.geometry.forget();
         bare::draw(&self.gpu, &mut self.pipelines, city, targets, &groups.view, view);
     }
 

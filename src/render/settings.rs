@@ -7,6 +7,8 @@ use crate::render::light::SHADOW_SIZE;
 pub struct Settings {
     /// Whether chunks that nearer ones hide are left out where that pays: on software adapters.
     pub culls_hidden: bool,
+    /// Whether the city is not drawn again where only lenses move that hide nothing of it. Where frames are measured it is drawn in each.
+    pub holds_geometry: bool,
     /// Whether lists of many lenses are narrowed to what each tile shows.
     pub narrows_lists: bool,
     /// The number of fragment nodes of translucent layers that have room at a time; `None`: as many as [`crate::render::layers::LAYER_BYTES`]
@@ -34,6 +36,7 @@ impl Settings {
     pub fn new(is_software: bool) -> Self {
         Self {
             culls_hidden: is_software,
+            holds_geometry: true,
             narrows_lists: true,
             most_layers: None,
             picked_layer: None,

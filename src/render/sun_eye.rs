@@ -7,7 +7,8 @@
 //! inside the first for the largest `scale` that fits.
 //!
 //! Squares stand on a grid of texels, counted from the world's origin, and sides come in steps of a fourth root of two: while an eye moves
-//! and turns, borders of shadows stay where they are, but where a side takes its next step.
+//! and turns, borders of shadows stay where they are, but where a side takes its next step. The grid is wide, so that for many frames the map is the
+//! same, and need not be drawn again.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
@@ -46,6 +47,8 @@ const SHIFTS: f64 = 64.0;
 /// Squares stand on a grid of at most so many texels of the first: a texel of the widest where levels are two or four times as wide as
 /// the one before, and an eighth of it where they are eight times as wide.
 const GRID_TEXELS: f64 = 64.0;
+/// Where there is one square, of so many parts of its side: that is what it is wider than it need be.
+const GRID_PARTS: f64 = 32.0;
 
 /// How large a map may be, and how coarse.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,10 +94,6 @@ impl Across {
 
     fn turned(&self, direction: DVec3) -> DVec2 {
         DVec2::new(direction.dot(self.basis.right), -direction.dot(self.basis.up))
-    }
-
-    fn place(&self, across: DVec2) -> DVec3 {
-        self.origin + across.x * self.basis.right - across.y * self.basis.up
     }
 
     /// Around a box.
@@ -246,7 +245,7 @@ impl<'a> Shown<'a> {
         };
         let [low, high] = around_all(self.boxes.iter().filter_map(shown).flatten());
         let [low, high] = if low.cmple(high).all() { [low, high] } else { picture };
-        let side = in_steps((high - low).max_element() / (1.0 - 2.0 * FILTER_TEXELS / texels));
+        let side = in_steps((high - low).max_element() / (1.0 - 2.0 * FILTER_TEXELS / texels - 1.0 / GRID_PARTS));
         let pixels = self.pixels(side / texels, near);
         Fit { anchor: 0.5 * (low + high), shift: DVec2::splat(0.5), sides: vec![side], ratio: 1.0, pixels }
     }
@@ -286,7 +285,11 @@ impl Fit {
     /// Texels of the first level between places that squares may have.
     fn grid(&self, texels: f64) -> f64 {
         let widest = self.ratio.powi(LEVELS as i32 - 1);
-        if self.ratio > 1.0 { widest.min(GRID_TEXELS).min(texels / 32.0).max(1.0) } else { 1.0 }
+        if self.ratio > 1.0 {
+            widest.min(GRID_TEXELS).min(texels / 32.0).max(1.0)
+        } else {
+            (texels / GRID_PARTS).floor()
+        }
     }
 }
 
@@ -304,21 +307,24 @@ impl SunEye {
         // On the grid, counted from the world's own origin.
         let step = fit.sides[0] / f64::from(texels) * fit.grid(texels.into());
         let from_world = across.turned(across.origin);
-        let anchor = across.place(((from_world + fit.anchor) / step).round() * step - from_world);
+        let place = ((from_world + fit.anchor) / step).round() * step;
+        // By the world's origin alone, to the bit: a map that is held need not be drawn anew.
+        let anchor = place.x * across.basis.right - place.y * across.basis.up;
         let all = seen.iter().fold(*casters, |all, bounds| all.union(*bounds));
         // What is not between the sun and the widest square neither throws nor takes shadows there: depth is counted in what is.
         let widest = fit.sides.iter().copied().fold(0.0, f64::max);
-        let middle = across.place(across.of(anchor) + (0.5 - fit.shift) * widest);
+        let aside = (0.5 - fit.shift) * widest;
+        let middle = anchor + aside.x * across.basis.right - aside.y * across.basis.up;
         let sides = [across.basis.right, across.basis.up].map(|axis| [axis, -axis].map(|axis| (axis, WIDER * widest)));
         let along = faces_in(&all, middle, sides.as_flattened()).into_iter().map(|p| p.dot(direction));
-        let [low, beyond] = along.fold([0.0_f64; 2], |[low, high], p| [low.min(p), high.max(p + ROOM_M)]);
-        let beyond = beyond.max(ROOM_M);
+        let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
+        let [low, beyond] = if low <= high { [low, high + ROOM_M] } else { [0.0, ROOM_M] };
         let level = |side: &f64| {
             let middle = (0.5 - fit.shift) * *side;
-            let target = anchor + middle.x * across.basis.right - middle.y * across.basis.up;
+            let eye = anchor + middle.x * across.basis.right - middle.y * across.basis.up + beyond * direction;
             let camera = Camera {
-                eye: target + beyond * direction,
-                target,
+                eye,
+                target: eye - (beyond - low) * direction,
                 up: DVec3::Z,
                 projection: Projection::Orthographic { height_m: *side },
                 near_m: 1.0,
@@ -619,6 +625,27 @@ mod tests {
             let [near, wide] = [&casters, &far].map(|all| of_size(&view, sun, &seen, all, SIZE).unwrap());
             assert_eq!((near.scale(), near.packed()), (wide.scale(), wide.packed()));
             assert!((near.anchor - wide.anchor).length() < 1e-9);
+        }
+    }
+
+    /// A map that is held need not be drawn: its views are the same to the bit.
+    #[test]
+    fn most_steps_of_an_eye_leave_the_views_as_they_are() {
+        let (boxes, casters) = town();
+        // Shares of the distance: from a street centimetres.
+        let steps = [2e-3, 2e-4, 2e-4, 2e-3];
+        for (sun, (camera, step_share)) in suns().flat_map(|sun| eyes().into_iter().zip(steps).map(move |c| (sun, c))) {
+            let of = |step: u32| {
+                let aside = (camera.target - camera.eye).cross(camera.up).normalize_or(DVec3::X);
+                let aside = aside * (step_share * f64::from(step) * camera.eye.distance(camera.target));
+                let view = View::new(Camera { eye: camera.eye + aside, ..camera }, [640, 400], &casters).unwrap();
+                let seen: Vec<Aabb> = boxes.iter().filter(|b| view.frustum(1.0).meets(b)).copied().collect();
+                let eye = of_size(&view, sun, &seen, &casters, SIZE).unwrap();
+                (0..eye.levels.len()).map(|level| eye.uniform(level)).collect::<Vec<_>>()
+            };
+            let views: Vec<_> = (0..40).map(of).collect();
+            let drawn = views.windows(2).filter(|pair| pair[0] != pair[1]).count();
+            assert!(drawn <= 12, "{drawn} of 39, {sun:?}, {camera:?}");
         }
     }
 

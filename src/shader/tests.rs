@@ -260,7 +260,9 @@ fn validate_text(name: &str, source: &str) {
     for function in functions.chain(parsed.entry_points.iter().map(|entry| &entry.function)) {
         if let Some(span) = branch_on_uniforms(&parsed, function, &function.body) {
             let line = span.location(source).line_number;
-            panic!("{name}, line {line}: a branch on nothing but uniforms, for which Mesa's software driver compiles anew in each frame; use select()");
+            panic!(
+                "{name}, line {line}: a branch on nothing but uniforms, for which Mesa's software driver compiles anew in each frame; use select()"
+            );
         }
     }
 }

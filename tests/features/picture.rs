@@ -14,7 +14,7 @@ use veduta::{
         picture::{Aovs, Request, Studio},
         stats::LensFigures,
     },
-    scene::{BaseStyle, Scene, StyleLook},
+    scene::{BaseStyle, Scene, StyleLook, Technique, Transparency},
     view::{Camera, View},
 };
 
@@ -205,6 +205,76 @@ fn the_same_scene_gives_the_same_bytes_and_costs_nothing_anew() {
     assert_eq!(geometry, 1);
     // A second renderer, from nothing.
     assert_eq!(picture(&mut synthetic(60), &scene, SIZE).rgba, first.rgba);
+}
+
+/// Frames in turn, each another than the one before by one thing: what is held on the GPU shows as it does where all is drawn anew, and a lens that
+/// hides nothing moves over a city that is not drawn again.
+#[test]
+fn what_is_held_from_frame_to_frame_shows_as_drawn_anew() {
+    let mut studios = [true, false].map(|holds| {
+        let mut studio = synthetic(60);
+        studio.renderer.settings.holds_geometry = holds;
+        studio
+    });
+    let at = house(&studios[0], 0.5);
+    let mut scene = scene(overview(), vec![lens("a", shapes(at, 40.0)[..1].to_vec(), "greyscale")]);
+    scene.sun.shadows = true;
+    let mut request = Request { screen_occlusion: true, ..Request::plain(SIZE) };
+    let effects = ["greyscale", "eraser", "posterise", "x-ray", "sepia", "cut-away"];
+    let (mut held, mut seed) = (0, 5_u32);
+    for frame in 0..96 {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let pick = seed >> 16;
+        match frame % 8 {
+            // Four times of eight nothing but the lens moves.
+            0 | 1 | 3 | 4 => {
+                let Region::Shape(Shape::Sphere { center, .. }) = &mut scene.lenses[0].shapes[0] else {
+                    panic!("a sphere")
+                };
+                center.x += 3.0;
+            }
+            2 => scene.lenses[0].effects = vec![used(effects[pick as usize % effects.len()])],
+            5 => match pick % 4 {
+                0 => scene.camera.as_mut().expect("a camera").eye.x += 5.0,
+                1 => request.samples = 4 - request.samples,
+                2 => request.size[0] ^= 16,
+                _ => request.aovs.depth ^= true,
+            },
+            6 => match pick % 4 {
+                0 => scene.style.technique = [Technique::Accumulate, Technique::Regions][pick as usize / 4 % 2],
+                1 => scene.style.transparency = [Transparency::Exact, Transparency::Stochastic][pick as usize / 4 % 2],
+                2 => scene.style.facades ^= true,
+                _ => scene.style.look = [StyleLook::Natural, StyleLook::Paper][pick as usize / 4 % 2],
+            },
+            _ => {
+                // Another draws into the same targets; and back to what is held.
+                request.samples = 1;
+                (scene.style.technique, scene.style.transparency) = (Technique::Accumulate, Transparency::Exact);
+                let view = view(scene.camera.expect("a camera"), request.size);
+                studios.iter_mut().for_each(|studio| studio.renderer.draw_bare(&view));
+            }
+        }
+        if scene.style.technique == Technique::Regions {
+            // What that cannot do is another test's.
+            scene.lenses[0].effects = vec![used("greyscale")];
+        }
+        let [as_held, anew] = studios.each_mut().map(|studio| {
+            let passes = studio.draw(&scene, &request).unwrap_or_else(|error| panic!("{frame}: {error}"));
+            let targets = studio.renderer.targets().expect("targets");
+            let bytes = studio.renderer.gpu.read_texture(&targets.picture.texture, 0, wgpu::TextureAspect::All);
+            let is_drawn = passes.iter().any(|pass| pass.name.starts_with("geometry"));
+            (is_drawn, bytes.expect("a picture"))
+        });
+        assert!(anew.0, "frame {frame}");
+        held += u32::from(!as_held.0);
+        assert!(
+            as_held.1 == anew.1,
+            "frame {frame}: another picture, {} {:?}",
+            scene.lenses[0].effects[0].effect,
+            request
+        );
+    }
+    assert!(held > 20, "only {held} frames of 96 hold the city");
 }
 
 #[test]

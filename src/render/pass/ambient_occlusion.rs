@@ -6,7 +6,10 @@ use wgpu::ShaderStages as S;
 use crate::{
     gpu::{Gpu, GpuError},
     render::{
-        pass::context::{Board, FrameContext, Keys, Line, Pass},
+        pass::{
+            context::{Board, FrameContext, Keys, Line, Pass},
+            geometry::Drawing,
+        },
         plan::FramePlan,
         programs::Programs,
         resource::{
@@ -56,6 +59,8 @@ impl PipelineKey for OcclusionKey {
 #[derive(Debug)]
 pub struct AmbientOcclusion {
     group: KeptGroup,
+    /// Of which drawing of the city the target holds it.
+    held: Option<(Drawing, wgpu::Texture)>,
 }
 
 impl Pass for AmbientOcclusion {
@@ -65,11 +70,15 @@ impl Pass for AmbientOcclusion {
         &[("ambient occlusion", "of one sample, where it is asked for: how much of the sky the picture's places see")];
 
     fn new(_: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { group: KeptGroup::default() })
+        Ok(Self { group: KeptGroup::default(), held: None })
     }
 
     fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<()> {
         plan.has_screen_occlusion().then_some(())
+    }
+
+    fn forget(&mut self) {
+        self.held = None;
     }
 
     fn add_needs((): &(), _: &FramePlan, needs: &mut Needs) {
@@ -85,9 +94,14 @@ impl Pass for AmbientOcclusion {
         (): &(),
         frame: &FrameContext,
         recording: &mut Recording,
-        _: &mut Board,
+        board: &mut Board,
     ) -> Result<(), GpuError> {
         let FrameContext { gpu, pipelines, shared, groups, targets, cities, plan, .. } = *frame;
+        let wanted = board.get::<Drawing>().map(|drawing| (*drawing, targets.occlusion.texture.clone()));
+        if wanted.is_some() && self.held == wanted {
+            return Ok(());
+        }
+        self.held = wanted;
         self.group.fit(shared.stamp, || {
             let entries = [
                 (0, wgpu::BindingResource::TextureView(cities.surfaces())),

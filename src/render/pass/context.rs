@@ -47,6 +47,9 @@ pub(in crate::render) trait Pass: Debug + Sized {
     /// Notes that a frame begins, whether or not it asks for the pass.
     fn begin(&mut self, _plan: &FramePlan) {}
 
+    /// Forgets what it takes to be on the GPU: a frame failed, and it may not be there.
+    fn forget(&mut self) {}
+
     /// Adds the targets that it draws into.
     fn add_needs(_input: &Self::Input<'_>, _plan: &FramePlan, _needs: &mut Needs) {}
 

@@ -1,10 +1,13 @@
-//! The city, every triangle at most once: in one pass, or what is near first and then what it does not hide.
+//! The city, every triangle at most once: in one pass, or what is near first and then what it does not hide; and not again as long as the targets
+//! hold it.
 
 use crate::{
     gpu::{Gpu, GpuError},
     render::{
+        cells::Details,
         cities::DrawnSection,
         city::SeenChunk,
+        layout,
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass},
             culling_depth::{self, CullingDepth},
@@ -12,14 +15,63 @@ use crate::{
         },
         plan::FramePlan,
         programs::Programs,
-        resource::recording::Recording,
+        resource::{recording::Recording, targets::Targets},
     },
+    scene::Transparency,
+    view::View,
 };
 
-/// What it keeps: the near depth of the last frame that culled by it.
+/// What the targets show of a city of which nothing is hidden.
+#[derive(Clone, Debug, PartialEq)]
+struct Held {
+    eye: layout::View,
+    /// Chunks are culled by this one.
+    view: View,
+    /// In which detail the city is drawn.
+    details: Details,
+    /// How often the city, or what is moved of it, became another.
+    world: u64,
+    /// Whether depth is drawn for AOVs too.
+    measured: bool,
+    /// Codes, colours, depth, depth for AOVs, shares of own light.
+    targets: [wgpu::Texture; 5],
+}
+
+impl Held {
+    /// What a frame wants to be there; `None` where it must be drawn: lenses hide something, or put something there.
+    fn wanted(frame: &FrameContext) -> Option<Self> {
+        let FrameContext { plan, shared, targets, .. } = *frame;
+        let is_own = plan.cuts.picture.is_none() && plan.sections.len() == plan.own_sections.len();
+        let Targets { codes, colors, depth, own_depth, emissions, .. } = targets;
+        (plan.settings.holds_geometry && is_own && !is_drawn_over(plan)).then(|| Self {
+            eye: plan.view_uniform(),
+            view: plan.input.view,
+            details: plan.details.clone(),
+            world: shared.world,
+            measured: plan.input.measured,
+            targets: [codes, colors, depth, own_depth, emissions].map(|target| target.texture.clone()),
+        })
+    }
+}
+
+/// Whether later passes draw into the same targets.
+fn is_drawn_over(plan: &FramePlan) -> bool {
+    let by_chance = plan.plans.layering.is_some() && plan.input.transparency == Transparency::Stochastic;
+    by_chance || plan.has_sections || plan.plans.regions.is_some()
+}
+
+/// Handed on: how often the targets of what is opaque were drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Drawing(pub u64);
+
+/// What it keeps.
 #[derive(Debug)]
 pub struct Geometry {
+    /// The near depth of the last frame that culled by it.
     near: Option<CullingDepth>,
+    /// What the targets hold.
+    held: Option<Held>,
+    drawing: Drawing,
 }
 
 impl Pass for Geometry {
@@ -31,11 +83,21 @@ impl Pass for Geometry {
     ];
 
     fn new(_: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self { near: None })
+        Ok(Self { near: None, held: None, drawing: Drawing(0) })
     }
 
     fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<()> {
         plan.plans.regions.is_none().then_some(())
+    }
+
+    fn begin(&mut self, plan: &FramePlan) {
+        if is_drawn_over(plan) {
+            self.held = None;
+        }
+    }
+
+    fn forget(&mut self) {
+        self.held = None;
     }
 
     fn add_keys(&self, input: Option<&()>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
@@ -53,9 +115,17 @@ impl Pass for Geometry {
         (): &(),
         frame: &FrameContext,
         recording: &mut Recording,
-        _: &mut Board,
+        board: &mut Board,
     ) -> Result<(), GpuError> {
         let FrameContext { gpu, targets, plan, .. } = *frame;
+        let wanted = Held::wanted(frame);
+        if wanted.is_some() && self.held == wanted {
+            board.put(self.drawing);
+            return Ok(());
+        }
+        self.held = wanted;
+        self.drawing.0 += 1;
+        board.put(self.drawing);
         let (view, tile) = (&plan.input.view, plan.input.tile);
         let cut = CutBy::of_picture(frame);
         let hidden = cut.map(|by| by.cut);

@@ -130,6 +130,11 @@ macro_rules! table {
                 $(self.$field.begin(plan);)*
             }
 
+            /// Forgets what they take to be on the GPU.
+            pub fn forget(&mut self) {
+                $(Pass::forget(&mut self.$field);)*
+            }
+
             /// The pipelines that they ask for where a frame runs these programs.
             pub fn keys(&self, inputs: &Inputs, plan: &FramePlan, programs: &Programs) -> Keys {
                 let mut keys = Keys::default();

@@ -268,6 +268,10 @@ impl<const OF_SKY: bool> Pass for LightMap<OF_SKY> {
         if OF_SKY { plan.sky.as_ref() } else { plan.sun.as_ref() }
     }
 
+    fn forget(&mut self) {
+        self.held = None;
+    }
+
     fn add_needs(sun: &&SunEye, _: &FramePlan, needs: &mut Needs) {
         let side = if OF_SKY { &mut needs.sky } else { &mut needs.shadow };
         *side = sun.size;

@@ -149,6 +149,7 @@ fn shots_of(
 
 /// Draws a frame to its end; milliseconds.
 fn drawn(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> Result<f64, RenderError> {
+    studio.renderer.settings.holds_geometry = false;
     let start = Instant::now();
     studio.redraw(scene, size)?;
     studio.renderer.gpu.wait()?;
@@ -164,6 +165,7 @@ fn gpu_times(studio: &mut Studio, shots: &[Shot], timing: &Timing<'_>) -> Vec<Op
         if !timing.clock.has_time(Part::Frames) {
             return None;
         }
+        studio.renderer.settings.holds_geometry = false;
         // Once unwatched, as above.
         studio.redraw_timed(&shot.scene, timing.size).ok()?;
         let times: Option<Vec<f64>> =
