@@ -218,7 +218,7 @@ fn what_is_held_from_frame_to_frame_shows_as_drawn_anew() {
     });
     let at = house(&studios[0], 0.5);
     let mut scene = scene(overview(), vec![lens("a", shapes(at, 40.0)[..1].to_vec(), "greyscale")]);
-    scene.sun.shadows = true;
+    (scene.sun.shadows, scene.sun.ambient_occlusion) = (true, true);
     let mut request = Request { screen_occlusion: true, ..Request::plain(SIZE) };
     let effects = ["greyscale", "eraser", "posterise", "x-ray", "sepia", "cut-away"];
     let (mut held, mut seed) = (0, 5_u32);
@@ -240,24 +240,31 @@ fn what_is_held_from_frame_to_frame_shows_as_drawn_anew() {
                 2 => request.size[0] ^= 16,
                 _ => request.aovs.depth ^= true,
             },
-            6 => match pick % 4 {
-                0 => scene.style.technique = [Technique::Accumulate, Technique::Regions][pick as usize / 4 % 2],
+            6 => match pick % 6 {
+                0 | 4 | 5 => scene.style.technique = Technique::Regions,
                 1 => scene.style.transparency = [Transparency::Exact, Transparency::Stochastic][pick as usize / 4 % 2],
                 2 => scene.style.facades ^= true,
                 _ => scene.style.look = [StyleLook::Natural, StyleLook::Paper][pick as usize / 4 % 2],
             },
             _ => {
-                // Another draws into the same targets; and back to what is held.
+                // Back to what is held; every other time another has drawn into the same targets.
                 request.samples = 1;
+                if scene.style.technique == Technique::Regions {
+                    scene.camera.as_mut().expect("a camera").eye.x -= 7.0;
+                }
                 (scene.style.technique, scene.style.transparency) = (Technique::Accumulate, Transparency::Exact);
                 let view = view(scene.camera.expect("a camera"), request.size);
-                studios.iter_mut().for_each(|studio| studio.renderer.draw_bare(&view));
+                if frame % 16 == 7 {
+                    studios.iter_mut().for_each(|studio| studio.renderer.draw_bare(&view));
+                }
             }
         }
         if scene.style.technique == Technique::Regions {
-            // What that cannot do is another test's.
+            // It hides nothing; from another place, and back again.
             scene.lenses[0].effects = vec![used("greyscale")];
+            scene.camera.as_mut().expect("a camera").eye.x += 7.0;
         }
+        studios[1].renderer.drop_targets();
         let [as_held, anew] = studios.each_mut().map(|studio| {
             let passes = studio.draw(&scene, &request).unwrap_or_else(|error| panic!("{frame}: {error}"));
             let targets = studio.renderer.targets().expect("targets");

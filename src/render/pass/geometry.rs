@@ -17,7 +17,6 @@ use crate::{
         programs::Programs,
         resource::{recording::Recording, targets::Targets},
     },
-    scene::Transparency,
     view::View,
 };
 
@@ -38,12 +37,12 @@ struct Held {
 }
 
 impl Held {
-    /// What a frame wants to be there; `None` where it must be drawn: lenses hide something, or put something there.
+    /// What a frame wants to be there; `None` where it must be drawn: lenses hide something, put something there, or cut it open.
     fn wanted(frame: &FrameContext) -> Option<Self> {
         let FrameContext { plan, shared, targets, .. } = *frame;
         let is_own = plan.cuts.picture.is_none() && plan.sections.len() == plan.own_sections.len();
         let Targets { codes, colors, depth, own_depth, emissions, .. } = targets;
-        (plan.settings.holds_geometry && is_own && !is_drawn_over(plan)).then(|| Self {
+        (plan.settings.holds_geometry && is_own).then(|| Self {
             eye: plan.view_uniform(),
             view: plan.input.view,
             details: plan.details.clone(),
@@ -52,12 +51,6 @@ impl Held {
             targets: [codes, colors, depth, own_depth, emissions].map(|target| target.texture.clone()),
         })
     }
-}
-
-/// Whether later passes draw into the same targets.
-fn is_drawn_over(plan: &FramePlan) -> bool {
-    let by_chance = plan.plans.layering.is_some() && plan.input.transparency == Transparency::Stochastic;
-    by_chance || plan.has_sections || plan.plans.regions.is_some()
 }
 
 /// Handed on: how often the targets of what is opaque were drawn.
@@ -91,7 +84,8 @@ impl Pass for Geometry {
     }
 
     fn begin(&mut self, plan: &FramePlan) {
-        if is_drawn_over(plan) {
+        // Its passes draw into the same targets. Others that do come with a cut.
+        if plan.plans.regions.is_some() {
             self.held = None;
         }
     }
