@@ -82,5 +82,6 @@ fn a_far_overlay_looks_as_with_all_triangles() {
     };
     let [own, without] = [&full, &bare].map(|other| mean(other));
     assert!(own > 0.0, "block models are drawn");
-    assert!(own < 0.2 * without, "{own} of 255 off the city in full, {without} off the city without houses");
+    // Seen: 0.12; 0.2 where roofs of blocks are all coloured as flat ones.
+    assert!(own < 0.16 * without, "{own} of 255 off the city in full, {without} off the city without houses");
 }
