@@ -41,6 +41,7 @@ mod case_22_points_of_interest;
 mod case_23_jitter;
 mod case_24_combinations;
 mod deformed;
+mod large_cities;
 mod lenses;
 mod oracle;
 #[path = "../panes/mod.rs"]
