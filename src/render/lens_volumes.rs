@@ -116,7 +116,7 @@ pub(super) fn volumes_of<'a>(drawn: &'a Drawn, eye: &Eye, tools: &mut Tools<'a>)
             if let Some(content) = lens.shown() {
                 region.leaves_mut().for_each(|leaf| in_all_levels(&mut leaf.leaf, city, content.derive.as_ref()));
             }
-            let volume = volume_of(i as u32, lens, region, &place.motion)
+            let volume = volume_of(i as u32, lens, region, &place.motion, scene.figure.point_px())
                 .map_err(|message| format!("[lens.{}] sprite.camera: {message}", drawn.owner(i as u32)))?;
             let [picture, sun] = volume.tests();
             all.tests.picture.extend(picture);
@@ -167,7 +167,13 @@ fn tell_distance(leaf: &mut Leaf, solids: &mut Solids) {
     }
 }
 
-fn volume_of(number: u32, lens: &Lens, region: PlacedRegion, motion: &Motion) -> Result<LensVolume, CameraError> {
+fn volume_of(
+    number: u32,
+    lens: &Lens,
+    region: PlacedRegion,
+    motion: &Motion,
+    point_px: f64,
+) -> Result<LensVolume, CameraError> {
     let sprite = lens.sprite.map(|sprite| LensSprite { own: sprite.own.map(|own| own.moved(motion)), ..sprite });
     let mut volume = LensVolume {
         lens: number,
@@ -175,6 +181,7 @@ fn volume_of(number: u32, lens: &Lens, region: PlacedRegion, motion: &Motion) ->
         region,
         everywhere: lens.classes().any(|class| class == Class::Rest),
         drawn: lens.drawn_body(),
+        point_px,
         sprite,
         asks_sides: lens.classes().any(|class| class != Class::Inside) || ends_along_rays(lens),
         border: lens.soft_border(),

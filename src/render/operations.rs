@@ -16,10 +16,17 @@ use crate::{
     },
 };
 
-/// Width of a lens outline, pixels.
-const OUTLINE_PX: f32 = 1.6;
-/// How far the glow around a lens goes, pixels.
-pub const HALO_PX: f32 = 18.0;
+/// Width of a lens outline, points.
+const OUTLINE_PT: f64 = 1.2;
+/// And pixels at most: it is looked for pixel by pixel, and of loops software adapters go 65,535 rounds in all.
+const WIDEST_OUTLINE_PX: f64 = 8.0;
+/// How far the glow around a lens goes, points.
+const HALO_PT: f64 = 13.5;
+
+/// How wide the line or the glow of a lens' body is, pixels. `point_px`: pixels of a point.
+pub fn body_px(is_halo: bool, point_px: f64) -> f64 {
+    if is_halo { HALO_PT * point_px } else { (OUTLINE_PT * point_px).min(WIDEST_OUTLINE_PX) }
+}
 
 /// Different neighbourhood filters of a picture: each takes four of an image's 256 layers, of a transparent picture eight.
 pub const MOST_FILTERS: usize = 32;
@@ -168,7 +175,7 @@ impl Operations {
             let Some(kind) = body_kind(lens.drawn_body()) else { continue };
             let [r, g, b] = palette::linear(lens.color);
             out.bodies.push((i as u32, PlanBody { kind, parameters: out.parameters.len() as u32 }));
-            let width = if kind == BodyKind::Halo { HALO_PX } else { OUTLINE_PX };
+            let width = body_px(kind == BodyKind::Halo, point_px) as f32;
             out.parameters.extend([[r, g, b, 0.92], [width, 0.0, 0.0, 0.0]]);
         }
         for (i, lens) in active() {

@@ -20,7 +20,7 @@ use crate::{
         },
         silhouettes::Rays,
         solids::SolidTable,
-        volume::WIDE_MARGIN_PX,
+        volume::LensVolume,
     },
     shader::{MOST_SLOTS, MOST_VOLUMES},
 };
@@ -133,10 +133,11 @@ impl Shared {
             let invokers: &Invokers = plans.invokers();
             stale |= self.invoker_table.sync(gpu, &invokers.table(input.tile.size))?;
             stale |= self.invokers.sync(gpu, invokers.all())?;
+            let margin = input.volumes.iter().map(LensVolume::line_margin_px).max().unwrap_or_default();
             let rays = |PictureTile { origin: [x, y], size }: PictureTile| {
                 let [left, top] = input.tile.origin;
                 let tile = PictureTile { origin: [left + x, top + y], size };
-                Rays::of(&input.view, tile, WIDE_MARGIN_PX.into())
+                Rays::of(&input.view, tile, margin.into())
             };
             let lists = invokers.tile_lists(&plans.parts, input.tile.size, &plans.silhouettes, rays);
             stale |= self.tile_lists.sync(gpu, &lists)?;

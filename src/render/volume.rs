@@ -8,16 +8,17 @@ use crate::{
     render::{
         eye::PictureTile,
         flat, layout,
-        operations::HALO_PX,
+        operations::body_px,
         placed_region::{Leaf, PlacedLeaf, PlacedRegion},
         screen_bound::ScreenBound,
     },
+    scene::{DEFAULT_DPI, POINTS_PER_INCH},
     shader::{Form, LensTest},
     view::View,
 };
 
-/// Pixels around a volume's projection that may still show its outline, or be where a coarse sprite has it.
-pub const WIDE_MARGIN_PX: i32 = 4;
+/// Pixels around a volume's projection that may be where a coarse sprite has it, or show an outline of 1.6 pixels; a wider one is told beside.
+const WIDE_MARGIN_PX: i32 = 4;
 /// Without these: for samples up to half a pixel beside the pixels' centres, and what rounding moves.
 const MARGIN_PX: i32 = 1;
 
@@ -37,6 +38,8 @@ pub struct LensVolume {
     pub everywhere: bool,
     /// How its lens' body is drawn.
     pub drawn: LensBody,
+    /// Pixels of a point, by which its line or glow is wide.
+    pub point_px: f64,
     /// The sprite that it is tested by in the picture, if it is.
     pub sprite: Option<LensSprite>,
     /// Whether its lens acts on other classes than *inside*.
@@ -58,6 +61,7 @@ impl LensVolume {
             region,
             everywhere: false,
             drawn: LensBody::None,
+            point_px: DEFAULT_DPI / POINTS_PER_INCH,
             sprite: None,
             asks_sides: false,
             border: None,
@@ -155,7 +159,7 @@ impl LensVolume {
                 None => return Some(whole),
             },
             LensBody::None if self.sprite.is_none() => MARGIN_PX,
-            _ => WIDE_MARGIN_PX,
+            _ => self.line_margin_px(),
         };
         if let PlacedRegion::One(PlacedLeaf { leaf: Leaf::Volume(Volume::Flat(flat)), .. }) = &self.region {
             if self.border.is_some() {
@@ -165,7 +169,14 @@ impl LensVolume {
             let around = |(low, high)| ScreenBound::around(low, high).grown([margin; 2]).within(tile);
             return flat::projected(flat, view).map_or_else(|all| all.then_some(whole), around);
         }
-        if self.bounds.is_empty() || !view.frustum(margin.into()).meets(&self.bounds_of_border(view)) {
+        // A glow goes around the lens: what is behind an eye of parallel rays glows before it.
+        let glow_m = match self.drawn {
+            LensBody::Halo if view.is_orthographic() => f64::from(margin) * view.pixel_m(1.0),
+            _ => 0.0,
+        };
+        let bounds = self.bounds_of_border(view);
+        let bounds = Aabb { min: bounds.min - glow_m, max: bounds.max + glow_m };
+        if self.bounds.is_empty() || !view.frustum(margin.into()).meets(&bounds) {
             return None;
         }
         // What lies beside or behind the eye bounds nothing.
@@ -173,9 +184,16 @@ impl LensVolume {
         ScreenBound::around(low, high).grown([margin; 2]).within(tile)
     }
 
+    /// How far from its projection a line around it is seen at most, or what a coarse sprite says of it holds, pixels.
+    pub fn line_margin_px(&self) -> i32 {
+        // A line is half inside, and fades over a pixel.
+        let line = (0.5 * body_px(false, self.point_px) + 1.0).ceil() as i32;
+        WIDE_MARGIN_PX.max(line + 2)
+    }
+
     /// How far from its projection a halo is seen at most, pixels; `None` where that may be anywhere.
     ///
-    /// A halo is as wide as an angle (`lib/halo.wgsl`): its ray passes a place at a distance of no more than [`HALO_PX`] pixels on the axis,
+    /// A halo is as wide as an angle (`lib/halo.wgsl`): its ray passes a place at a distance of no more than its width in pixels on the axis,
     /// seen from as far along it. The further from the axis, the more pixels that angle takes.
     fn halo_reach_px(&self, view: &View) -> Option<f64> {
         let is_own = |leaf: &PlacedLeaf| matches!(leaf.leaf, Leaf::Own(_));
@@ -185,7 +203,7 @@ impl LensVolume {
         }
         // What tells less than a distance, axis by axis, is no more than that beside the box around it.
         let is_exact = self.region.volume().is_some() && !self.region.has_solids();
-        let width = f64::from(HALO_PX) * if is_exact { 1.0 } else { 3.0_f64.sqrt() };
+        let width = body_px(true, self.point_px) * if is_exact { 1.0 } else { 3.0_f64.sqrt() };
         if view.is_orthographic() {
             return Some(width);
         }
@@ -325,6 +343,7 @@ mod tests {
         fn beyond_the_bounds_of_a_halo_no_ray_comes_near(
             fov in 0.1..2.6_f64,
             parallel in prop::bool::weighted(0.2),
+            point_px in prop::sample::select(vec![4.0 / 3.0, 0.5, 7.0]),
             at in prop::array::uniform2(0.0..1.0_f64),
             away in 5.0..200.0_f64,
             radius in 0.5..20.0_f64,
@@ -353,7 +372,7 @@ mod tests {
                     (ball(&balls[1]), vec![Operation::Intersection]),
                 ]),
             };
-            let lens = LensVolume { drawn: LensBody::Halo, ..LensVolume::plain(0, region) };
+            let lens = LensVolume { drawn: LensBody::Halo, point_px, ..LensVolume::plain(0, region) };
             prop_assume!(!lens.bounds.is_empty());
             let tile = PictureTile { origin: [0; 2], size };
             let seen = lens.seen_part(&view, tile);
@@ -367,7 +386,7 @@ mod tests {
                     away / view.pixel_m(depth)
                 };
                 let closest = (0..1500).map(|i| width(0.1 * 1.006_f64.powi(i))).fold(f64::INFINITY, f64::min);
-                prop_assert!(closest > f64::from(HALO_PX), "{closest} pixels at {x}, {y}, {seen:?}");
+                prop_assert!(closest > body_px(true, point_px), "{closest} pixels at {x}, {y}, {seen:?}");
             }
         }
     }

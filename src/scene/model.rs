@@ -189,6 +189,8 @@ pub struct Figure {
     /// Dots per inch of the picture on paper, 10..=2400: what points are measured by, and what the file says. `None`: [`PAPER_DPI`] where
     /// there is a `paper`; else points are those of [`DEFAULT_DPI`], and the file says nothing.
     pub dpi: Option<f64>,
+    /// How many times as wide and high it is drawn as it says itself, > 0: 1 of all but what a window shows ([`Scene::sized`]). No file has it.
+    pub scale: f64,
 }
 
 /// The size of a figure on paper.
@@ -235,7 +237,7 @@ pub const MM_PER_INCH: f64 = 25.4;
 pub const DEFAULT_DPI: f64 = 96.0;
 
 /// Points of an inch.
-const POINTS_PER_INCH: f64 = 72.0;
+pub const POINTS_PER_INCH: f64 = 72.0;
 
 /// Size of text, its em.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -297,12 +299,12 @@ impl Figure {
         self.dpi_of_file().unwrap_or(DEFAULT_DPI)
     }
 
-    /// Pixels of a point, 1/72 inch: by its dots per inch; where it says none, a point of a picture up to 1280 × 720 is 4/3 pixels, and of a
+    /// Pixels of a point of it as it is drawn, 1/72 inch: by its dots per inch; where it says none, a point of a picture up to 1280 × 720 is 4/3 pixels, and of a
     /// larger one as much larger, so that lines keep their share of it as text does.
     pub fn point_px(&self) -> f64 {
         let [w, h] = self.pixels().map(f64::from);
         let larger = (w / 1280.0).min(h / 720.0).max(1.0);
-        self.dpi_of_file().unwrap_or(DEFAULT_DPI * larger) / POINTS_PER_INCH
+        self.scale * self.dpi_of_file().unwrap_or(DEFAULT_DPI * larger) / POINTS_PER_INCH
     }
 
     /// The size of the text, pixels, where the scene gives it, or a size on paper.
@@ -328,6 +330,7 @@ impl Default for Figure {
             north_arrow: PiecePlace::None,
             text: None,
             dpi: None,
+            scale: 1.0,
         }
     }
 }

@@ -10,13 +10,13 @@ use crate::{
 };
 
 /// The unit of effects' parameters that are lengths in the picture.
-const PIXELS: [&str; 2] = ["pixels", POINTS];
+const PIXELS: &str = "pixels";
 /// The one of those that follow the size of the picture, or its dots per inch: [`crate::scene::Figure::point_px`].
 pub const POINTS: &str = "points";
 
 impl Scene {
     /// The scene for a picture that is `factor` > 0 times as wide and high as the one that its lengths in pixels are meant for, and whose text
-    /// is so large there (`em_px`): overlays, their lines, the layout, text, borders and lines of effects, and how fine meshes are.
+    /// is so large there (`em_px`): overlays, their lines, the layout, text, borders, lines of effects and lenses, and how fine meshes are.
     #[must_use]
     pub fn sized(&self, factor: f64, em_px: f64) -> Self {
         let mut scene = self.clone();
@@ -26,6 +26,7 @@ impl Scene {
             *length = length.map(|length| length * factor);
         }
         scene.figure.text = Some(TextSize::Pixels(em_px * factor));
+        scene.figure.scale *= factor;
         scene.style.chord_px *= factor;
         scene.style = scene.style.drawn();
         scene.style.effects.iter_mut().for_each(|used| size_effect(used, factor));
@@ -60,7 +61,7 @@ fn size_lens(lens: &mut Lens, factor: f64) {
 
 fn size_effect(used: &mut EffectUse, factor: f64) {
     let Some(definition) = find(&used.effect) else { return };
-    for parameter in definition.parameters.iter().filter(|parameter| PIXELS.contains(&&*parameter.unit)) {
+    for parameter in definition.parameters.iter().filter(|parameter| parameter.unit == PIXELS) {
         let ParameterKind::Number { min, max } = parameter.kind else { continue };
         let given = used.number(&parameter.name);
         let number = given.or(match parameter.fallback {
@@ -100,9 +101,9 @@ mod tests {
         };
         let view = Lens::plain("view", BestViewLens { shown }, [0.0; 3]);
         let mut lines = Lens::plain("lines", LensKind::default(), [0.0; 3]);
-        let width =
-            find("wireframe").unwrap().parameters.iter().find(|own| PIXELS.contains(&&*own.unit)).unwrap().name.clone();
-        lines.effects = vec![used("wireframe", &[]), used("wireframe", &[(&width, 2.0)]), used("sepia", &[])];
+        let blur = find("blur").unwrap().parameters.iter().find(|own| own.unit == PIXELS).unwrap();
+        lines.effects =
+            vec![used("blur", &[]), used("blur", &[(&blur.name, 2.0)]), used("sepia", &[]), used("wireframe", &[])];
         scene.lenses = vec![view, lines];
         let line = ContextLine { widths: [Some(6.0), None], ..ContextLine::default() };
         scene.overlays = vec![Overlay { size: Some([240, 160]), line: Some(line), ..Overlay::of("view") }];
@@ -113,20 +114,11 @@ mod tests {
         assert_eq!((half.layout.margin_px, half.layout.gap_px), (Some(8.0), None));
         assert_eq!(half.figure.text_px(), Some(7.0));
         let effects = &half.lenses[1].effects;
-        let default = match find("wireframe")
-            .unwrap()
-            .parameters
-            .iter()
-            .find(|own| PIXELS.contains(&&*own.unit))
-            .unwrap()
-            .fallback
-        {
-            Fallback::Value(DefaultValue::Number(number)) => number,
-            _ => panic!("a width has a default"),
-        };
-        assert_eq!(effects[0].number(&width), Some(0.5 * default));
-        assert_eq!(effects[1].number(&width), Some(1.0));
-        assert_eq!(effects[2], scene.lenses[1].effects[2], "what is not in pixels stays");
+        let Fallback::Value(DefaultValue::Number(default)) = blur.fallback else { panic!("a radius has a default") };
+        assert_eq!(effects[0].number(&blur.name), Some(0.5 * default));
+        assert_eq!(effects[1].number(&blur.name), Some(1.0));
+        assert_eq!(effects[2..], scene.lenses[1].effects[2..], "what is not in pixels stays");
+        assert_eq!(half.figure.point_px(), 0.5 * scene.figure.point_px());
         // There and back; and at its own size nothing is another but for what was left to defaults.
         let back = half.sized(2.0, 7.0);
         assert_eq!(back.overlays[0], scene.overlays[0]);

@@ -10,7 +10,7 @@ use veduta::{
         frame::Backend,
         picture::{Picture, Request, Studio},
     },
-    scene::Scene,
+    scene::{Background, Scene},
     view::{Camera, View},
 };
 
@@ -274,4 +274,45 @@ fn a_line_around_a_ball_is_the_same_where_nothing_is_known_of_it_from_anywhere()
         tried += usize::from(lined > 0);
     }
     assert!(tried > 2 && on_line > 1000, "{on_line} pixels are on the lines of {tried} pictures");
+}
+
+/// An outline is 1.2 points wide, 8 pixels at most, and a glow 13.5: by the dots per inch of the figure, or the share of a picture larger than usual. Tiles have
+/// the same, and so have both back ends.
+#[test]
+fn bodies_are_as_wide_as_their_points_say() {
+    const WIDE: [u32; 2] = [400, 100];
+    let mut studio = synthetic(60);
+    let middle = studio.extent().center() + DVec3::Z * 400.0;
+    let camera = orthographic(middle - DVec3::Y * 100.0, middle, 100.0);
+    let ball = Shape::Sphere { center: middle, radius: 30.0 };
+    // Of the row through its middle: how much of the body's colour there is, in pixels, on each side.
+    let mut row_of = |body: LensBody, dpi: Option<f64>, scale: f64, backend: Backend, tile: Option<u32>| -> Vec<f64> {
+        let lens = Lens { color: [1.0; 3], ..body_of(body, ball.clone()) };
+        let mut scene = scene(camera, vec![lens]);
+        scene.style.background = Background::Color([0.0; 3]);
+        (scene.figure.dpi, scene.figure.scale) = (dpi, scale);
+        studio.renderer.settings.tile = tile;
+        let picture = studio.render(&scene, &Request { backend, ..Request::plain(WIDE) }).expect("a picture");
+        let row = &picture.rgba[(WIDE[1] / 2 * WIDE[0]) as usize..][..WIDE[0] as usize];
+        row.iter().map(|p| crate::light::decoded([f64::from(p[0]) / 255.0; 3])[0] / 0.92).collect()
+    };
+    for (dpi, scale, px) in [
+        (None, 1.0, 1.6),
+        (Some(96.0), 1.0, 1.6),
+        (Some(192.0), 1.0, 3.2),
+        (Some(150.0), 2.0, 5.0),
+        (Some(600.0), 1.0, 8.0),
+    ] {
+        let rows: Vec<Vec<f64>> = [(BACKENDS[0], None), (BACKENDS[1], None), (BACKENDS[0], Some(64))]
+            .map(|(backend, tile)| row_of(LensBody::Outline, dpi, scale, backend, tile))
+            .into();
+        assert!(rows.iter().all(|row| *row == rows[0]), "{dpi:?}");
+        let width = 0.5 * rows[0].iter().sum::<f64>();
+        assert!((width - px).abs() < 0.05, "{dpi:?}, {scale}: {width} pixels, {px} would be right");
+        // The glow is seen around the ball, less with the distance.
+        let glow = row_of(LensBody::Halo, dpi, scale, BACKENDS[0], None);
+        let lit = glow.iter().filter(|share| **share > 0.0).count() as f64;
+        let reach = 0.5 * lit / (13.5 / 72.0 * dpi.unwrap_or(96.0) * scale);
+        assert!((0.8..=1.1).contains(&reach) || px == 8.0, "{dpi:?}: a glow goes {reach} of its width");
+    }
 }

@@ -346,7 +346,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             Kind::Word { now: &["outline", "shell", "halo", "none"], later: &[] },
             "\"outline\"; of an occlusion lens \"none\"",
             "",
-            "How the lens body itself is drawn, in its colour: a line around it, tinted glass, a glow around it. Thematic and occlusion lenses show a line for all, and so do flat ones and those tested by a sprite for `halo`.",
+            "How the lens body itself is drawn, in its colour: a line around it, 1.2 points wide and at most 8 pixels, tinted glass, a glow of 13.5 points around it. Thematic and occlusion lenses show a line for all, and so do flat ones and those tested by a sprite for `halo`.",
             "\"none\"",
         ),
         Word,
