@@ -265,7 +265,17 @@ impl Window {
         let (Some(at), Some(camera)) = (at, self.camera()) else { return };
         let (modifiers, primary) =
             ui.input(|input| (input.modifiers, input.pointer.button_down(PointerButton::Primary)));
-        let held = self.view_in(rect).filter(|_| primary).and_then(|view| self.gizmo_at(&view, rect, at));
+        let held = self.view_in(rect).filter(|_| primary).and_then(|view| {
+            self.gizmo_at(&view, rect, at).or_else(|| {
+                // The disc of a lens that is not chosen chooses it, as a click does.
+                let lens = self.lens_at(&view, rect, at)?;
+                if self.is_locked(self.document.scene().lenses.get(lens)?) {
+                    return None;
+                }
+                self.chosen.lens = Some(lens);
+                self.gizmo_at(&view, rect, at)
+            })
+        });
         if let Some(grip) = held.and_then(|gizmo| self.grip(gizmo, at)) {
             self.canvas.drag = Some(Drag::Gizmo(Box::new(grip)));
             return;

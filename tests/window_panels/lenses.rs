@@ -160,6 +160,28 @@ fn sides_points_and_turns_are_dragged_in_the_picture() {
     assert_eq!(points[..2], [DVec3::new(-30.0, -30.0, 1.0), DVec3::new(-5.0, -25.0, 1.0)], "nothing else moves");
 }
 
+/// As a picture of a best-view lens is: whoever drags a disc means its lens. A locked one stays, and the eye turns.
+#[test]
+fn a_disc_is_dragged_before_its_lens_is_chosen() {
+    let text = "[[lens]]\nname = \"held\"\neffects = [\"sepia\"]\nshape = { kind = \"sphere\", center = [-10, -20, 6], radius = 9 }\n";
+    for is_locked in [false, true] {
+        let mut harness = with(text);
+        if is_locked {
+            click(&mut harness, "Lock held");
+        }
+        harness.state_mut().chosen.lens = None;
+        until_drawn(&mut harness);
+        let eye = harness.state().camera();
+        let (from, to) = (DVec3::new(-10.0, -20.0, 6.0), DVec3::new(-3.0, -26.0, 6.0));
+        let ends = [spot(&harness, from), spot(&harness, to)];
+        drag(&mut harness, ends[0], ends[1]);
+        let Region::Shape(Shape::Sphere { center, .. }) = shape(&harness) else { panic!("a sphere") };
+        assert!(center.distance(if is_locked { from } else { to }) < 0.05, "locked {is_locked}: {center}");
+        assert_eq!(harness.state().chosen.lens, (!is_locked).then_some(0));
+        assert_eq!(harness.state().camera() == eye, !is_locked);
+    }
+}
+
 #[test]
 fn what_is_attached_is_moved_from_where_it_is_attached() {
     let mut harness = with(
