@@ -29,6 +29,7 @@ pub mod render;
 pub mod scene;
 pub mod shader;
 pub mod text;
+pub mod time;
 pub mod view;
 pub mod visibility;
 

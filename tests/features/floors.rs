@@ -21,7 +21,7 @@ use source::{Modules, modules};
 
 /// The rooms, ground floor first; rooms of one floor do not import each other.
 const FLOORS: &[&[&str]] = &[
-    &["geom", "text"],
+    &["geom", "text", "time"],
     &["city", "field", "view", "overlay", "shader", "gpu"],
     &["visibility"],
     &["lens"],
