@@ -30,6 +30,8 @@ mod shadows;
 #[path = "data/standing.rs"]
 mod standing;
 mod studio;
+#[path = "data/time.rs"]
+mod time;
 #[path = "data/walks.rs"]
 mod walks;
 
@@ -76,6 +78,7 @@ fn main() {
         scenes::trials(),
         shadows::trials(),
         standing::trials(),
+        time::trials(),
         walks::trials(),
     ];
     let trials = rooms.into_iter().flatten().collect();

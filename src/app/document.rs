@@ -89,6 +89,7 @@ impl Document {
             camera_above_ground,
             sun,
             time_s,
+            moment,
             style,
             trajectories,
             pois,
@@ -99,8 +100,9 @@ impl Document {
             animation,
         } = self.scene();
         let saved = &self.saved;
-        let is_set_alike = (city, sun, time_s, style, layout, figure, animation)
-            == (&saved.city, &saved.sun, &saved.time_s, &saved.style, &saved.layout, &saved.figure, &saved.animation)
+        let is_set_alike = (city, sun, style, layout, figure, animation)
+            == (&saved.city, &saved.sun, &saved.style, &saved.layout, &saved.figure, &saved.animation)
+            && (time_s, moment) == (&saved.time_s, &saved.moment)
             && *camera_above_ground == saved.camera_above_ground;
         let has_alike = (trajectories, pois, lenses, overlays)
             == (&saved.trajectories, &saved.pois, &saved.lenses, &saved.overlays);

@@ -14,6 +14,7 @@ pub mod ground;
 pub mod json;
 pub mod kept_measures;
 pub mod label;
+pub mod lifetime;
 pub mod load;
 pub mod measured;
 mod memory;

@@ -150,6 +150,7 @@ mod tests {
             placement: Default::default(),
             shapes: vec![],
             effects,
+            time: vec![],
             body: Default::default(),
             sprite: None,
             border: None,

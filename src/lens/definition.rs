@@ -4,8 +4,8 @@ use crate::{
     geom::Shape,
     lens::{
         best_view::BestView, body::LensBody, border::Border, class::Class, content::Content, deform::Deform,
-        effect_use::EffectUse, kind::LensKind, occluders::Occluders, placement::Placement, region::Region,
-        rendering::Rendering, sprite::LensSprite,
+        effect_use::EffectUse, handled::Handled, kind::LensKind, occluders::Occluders, placement::Placement,
+        region::Region, rendering::Rendering, sprite::LensSprite,
     },
 };
 
@@ -26,6 +26,9 @@ pub struct Lens {
     pub shapes: Vec<Region>,
     /// What it does, in order (at most one scene style), after what it is drawn by.
     pub effects: Vec<EffectUse>,
+    /// Which moment shows in it, of the one that shows below it: operators, one after the other; none: the same. Of a lens with an
+    /// overlay, which moment that shows.
+    pub time: Vec<Handled>,
     /// How the lens body itself is drawn.
     pub body: LensBody,
     /// The volumetric depth sprite that it is tested by; `None`: from its shapes.
@@ -53,6 +56,7 @@ impl Lens {
             placement: Placement::World,
             shapes: Vec::new(),
             effects: Vec::new(),
+            time: Vec::new(),
             body,
             sprite: None,
             border: None,

@@ -138,6 +138,7 @@ pub fn problem_with(kind: &ParameterKind, value: &Parameter) -> Option<String> {
         )),
         (ParameterKind::Color, value) if color_of(value).is_some() => None,
         (ParameterKind::Vector, Parameter::Numbers(n)) if n.len() == 3 && n.iter().all(|n| n.is_finite()) => None,
+        (kind, Parameter::Text(text)) if kind.is_time() => kind.words_of_time(text).err(),
         (ParameterKind::Numbers, Parameter::Numbers(n)) => {
             let ascending = n.windows(2).all(|w| w[0] < w[1]) && n.iter().all(|n| n.is_finite());
             let fits = (1..=MAX_LIST).contains(&n.len()) && ascending;

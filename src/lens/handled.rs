@@ -61,11 +61,15 @@ impl Handled {
 
     /// Its parameters as the GPU reads them, packed.
     pub fn floats(&self, definition: &EffectDefinition) -> Vec<f32> {
-        let of = |parameter: &ParameterDefinition| match self.value(parameter) {
+        definition.shader_parameters().flat_map(|(parameter, ..)| self.floats_of(parameter)).collect()
+    }
+
+    /// One of them.
+    pub fn floats_of(&self, parameter: &ParameterDefinition) -> Vec<f32> {
+        match self.value(parameter) {
             Some(value) => effect::in_floats(parameter, &value),
             None => vec![0.0; parameter.kind.in_shader().map_or(0, |(_, floats)| floats)],
-        };
-        definition.shader_parameters().flat_map(|(parameter, ..)| of(parameter)).collect()
+        }
     }
 
     /// A length of its header, metres.

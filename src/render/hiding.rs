@@ -181,6 +181,11 @@ impl Hiding {
             hiding.contents.extend(own.iter().map(|reach| (content.city, reach.clone())));
             hiding.hidden.extend(own);
         }
+        if operations.timed {
+            // Whatever is where, objects come and go.
+            hiding.hidden.push(Reach::Everywhere);
+            hiding.lenses.extend(operations.epochs.iter().map(|e| e.lens).filter(|lens| is_active(Some(*lens))));
+        }
         hiding.lenses.sort_unstable();
         hiding.lenses.dedup();
         hiding

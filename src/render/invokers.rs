@@ -45,6 +45,7 @@ pub struct Invokers {
     hides: [u32; 2],
     lines: [u32; 2],
     contents: [u32; 2],
+    epochs: [u32; 2],
     /// Whether something is seen through.
     has_layers: bool,
     /// Outside of all lenses, and where they may be seen.
@@ -92,6 +93,24 @@ impl Invokers {
             }));
         }
         out.contents = [first, out.all.len() as u32];
+        let first = out.all.len() as u32;
+        if let Some(plan) = hiding.or(lining) {
+            let volumes = volumes_before(plan);
+            out.all.extend(plan.epochs.iter().map(|epoch| {
+                let lens = &plan.lenses[epoch.lens as usize];
+                let invoker = layout::Invoker {
+                    handler: epoch.handler,
+                    scope: scope_number(Scope::Lens(epoch.lens, ClassTest::Inside)),
+                    first_volume: volumes[epoch.lens as usize],
+                    volumes: lens.volumes.len() as u32,
+                    parameters: epoch.words,
+                    border: lens.border.map_or(0, |b| b.parameters + 1),
+                    ..layout::Invoker::default()
+                };
+                invoker.packed()
+            }));
+        }
+        out.epochs = [first, out.all.len() as u32];
         out.inside_of.resize(out.all.len(), None);
         let [context, lenses] = plans;
         let rules = |is_one: &dyn Fn(Scope) -> bool| -> Vec<Step> {
@@ -152,7 +171,8 @@ impl Invokers {
     /// The table as `shader::uber` declares it, for a picture of this size.
     pub fn table(&self, size: [u32; 2]) -> Vec<u32> {
         let [from, to] = self.contents;
-        [self.hides, self.lines, [size[0].div_ceil(TILE_PX), from], [to, u32::from(self.has_layers)]].concat()
+        let tiles = [[size[0].div_ceil(TILE_PX), from], [to, u32::from(self.has_layers)]];
+        [&[self.hides, self.lines], &tiles[..], &[self.epochs, [0; 2]]].concat().concat()
     }
 
     /// Where each may act, if the plan's lenses do in these rooms: everywhere if it acts on more than what is inside.

@@ -27,6 +27,7 @@ pub mod displayed;
 pub mod edges;
 mod empty_lenses;
 mod enclosed;
+pub mod epochs;
 pub mod eye;
 mod facades;
 mod flat;

@@ -1,18 +1,20 @@
 //! What the context and the lenses do, as one list: bottom lens first.
 
+use std::sync::Arc;
+
 use crate::{
-    city::CityModel,
+    city::{CityModel, lifetime::Lifetimes},
     lens::{
         BorderUnit, Class, Discrete, EffectUse, Lens, LensBody, Parameter,
         chosen::{Choice, ChoiceError, chosen, members},
         effect::{default_of, in_floats, ramp},
         thematic::ThematicScale,
     },
-    render::{palette, placed_region::Members},
+    render::{epochs::Epochs, palette, placed_region::Members},
     scene::sized::POINTS,
     shader::{
         self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
-        PlanBody, PlanBorder, PlanContent, PlanLens, Scope, Step, Uber,
+        PlanBody, PlanBorder, PlanContent, PlanEpoch, PlanLens, Scope, Step, Uber,
     },
 };
 
@@ -83,6 +85,26 @@ pub struct ContentUse {
     pub keeps_terrain: bool,
 }
 
+/// A time operator of a lens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EpochUse {
+    /// Which lens.
+    pub lens: u32,
+    /// Index into [`shader::handlers`].
+    pub handler: u32,
+    /// Where its words begin among the object values.
+    pub words: u32,
+}
+
+/// When objects are there, and what lenses do to that.
+#[derive(Clone, Debug, Default)]
+pub struct SceneTime {
+    /// The moments that show.
+    pub epochs: Epochs,
+    /// Of the scene's own city, then of contents.
+    pub lifetimes: Vec<Arc<Lifetimes>>,
+}
+
 /// A neighbourhood filter of a frame: one for all uses that would make the same image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filter {
@@ -125,6 +147,10 @@ pub struct Operations {
     pub list: Vec<Operation>,
     /// What lenses show in themselves, bottom lens first.
     pub contents: Vec<ContentUse>,
+    /// Whether objects come and go.
+    pub timed: bool,
+    /// What lenses do to the moment, bottom lens first.
+    pub epochs: Vec<EpochUse>,
     /// Lenses whose bodies are drawn, and how.
     pub bodies: Vec<(u32, PlanBody)>,
     /// Lenses with soft borders, and these.
@@ -152,10 +178,12 @@ impl Operations {
         tests: AllTests,
         models: &[&CityModel],
         tables: &LensTables,
+        time: &SceneTime,
         point_px: f64,
     ) -> Result<Self, ChoiceError> {
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(tests.sun), ..Self::default() };
+        out.add_time(time, visible);
         out.uber.tests = each_once(tests.picture);
         out.uber.leaves = each_once(tests.leaves);
         // Lenses of no volume at all have no bodies.
@@ -190,6 +218,22 @@ impl Operations {
             out.parameters.push([border.width as f32, in_pixels, dithered, along]);
         }
         Ok(out)
+    }
+
+    /// Puts when objects are there among the values of objects, before all else: where it begins, shaders know.
+    fn add_time(&mut self, time: &SceneTime, visible: &[bool]) {
+        self.timed = time.epochs.is_any() && time.lifetimes.iter().any(|lifetimes| lifetimes.has_any());
+        if !self.timed {
+            return;
+        }
+        let (words, begins) = time.epochs.words(&time.lifetimes);
+        self.object_values = words;
+        let operators = time.epochs.operators.iter().zip(begins);
+        let uses =
+            operators.map(|((lens, operator), words)| EpochUse { lens: *lens, handler: operator.handler, words });
+        self.epochs = uses.filter(|used| visible.get(used.lens as usize) == Some(&true)).collect();
+        self.uber.timed = true;
+        self.uber.epochs = each_once(time.epochs.operators.iter().map(|(_, operator)| operator.handler).collect());
     }
 
     /// What one module of the uber back end has to hold for this scene.
@@ -255,7 +299,7 @@ impl Operations {
     /// What shading has to do outside all lenses.
     pub fn context_plan(&self, haze: bool) -> Plan {
         let steps = self.steps(&[], |_| None);
-        Plan { lines: draws_lines(&steps), steps, haze, ..Plan::default() }
+        Plan { lines: draws_lines(&steps), steps, haze, timed: self.timed, ..Plan::default() }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
@@ -286,7 +330,14 @@ impl Operations {
             Some(PlanContent { lens, class, city: c.city, clip: c.clip, keeps_terrain: c.keeps_terrain })
         };
         let contents = self.contents.iter().filter_map(content).collect();
-        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks, contents, ..Plan::default() }
+        let epoch = |e: &EpochUse| {
+            let is_empty = empty.binary_search(&e.lens).is_ok();
+            let lens = place(e.lens).filter(|_| !is_empty)?;
+            Some(PlanEpoch { lens, handler: e.handler, words: e.words })
+        };
+        let epochs = self.epochs.iter().filter_map(epoch).collect();
+        let timed = self.timed;
+        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks, contents, timed, epochs, ..Plan::default() }
     }
 
     /// The list as steps; `place` finds a lens in the plan.

@@ -31,6 +31,7 @@ use crate::{
         city::Shown,
         deformed::DeformedFigures,
         diagnostics,
+        epochs::KnownLifetimes,
         eye::PictureTile,
         footprints::OwnFootprints,
         frame::{Backend, FrameInput, ShaderPart},
@@ -179,6 +180,8 @@ pub struct Studio {
     index: Arc<OnceLock<SpatialIndex>>,
     /// What its objects cover of the ground, once an effect asks for it.
     footprints: OwnFootprints,
+    /// When its objects, and those of contents, are there.
+    pub(super) lifetimes: Arc<KnownLifetimes>,
 }
 
 impl Studio {
@@ -223,6 +226,7 @@ impl Studio {
             insets: BTreeMap::new(),
             index: Arc::default(),
             footprints: OnceLock::new(),
+            lifetimes: Arc::default(),
         })
     }
 
@@ -531,6 +535,7 @@ impl Studio {
             facts: self.renderer.cities().map(|cities| cities.facts()),
             footprints: &self.footprints,
             reading: &self.reading,
+            lifetimes: &self.lifetimes,
         }
     }
 

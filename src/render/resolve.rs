@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use crate::{
-    city::{CityModel, load::LoadOptions},
+    city::{CityModel, lifetime::Lifetimes, load::LoadOptions},
     geom::Aabb,
     lens::solids::{ShownCity, Solids},
     render::{
@@ -12,12 +12,13 @@ use crate::{
         content_cities::{self, ContentCities, SceneContents},
         deformations::{self, KnownDeformations, SceneDeformations},
         displayed::{LastDisplayed, Stands},
+        epochs::{Epochs, KnownLifetimes},
         footprints::{self, OwnFootprints},
         lens_volumes::{LensVolumes, Tools, volumes_of},
         light::{LEAST_SHADOW_SIZE, casts_shadows, occludes_sky, to_sun},
         moved::Moved,
         occlusion::Occlusion,
-        operations::{AllTests, LensTables, MOST_FILTERS, Operations},
+        operations::{AllTests, LensTables, MOST_FILTERS, Operations, SceneTime},
         parts::whole,
         placed_region::Leaf,
         placement::Eye,
@@ -73,6 +74,8 @@ pub(super) struct Surroundings<'a> {
     pub footprints: &'a OwnFootprints,
     /// How contents of lenses are loaded.
     pub reading: &'a LoadOptions,
+    /// When objects of cities are there.
+    pub lifetimes: &'a KnownLifetimes,
 }
 
 /// What a scene is in one view.
@@ -249,11 +252,29 @@ impl Surroundings<'_> {
         let footprints = footprints::tables(scene, self.city, self.footprints, contents, volumes);
         let (style, tables) = (&scene.style, LensTables { sights, footprints });
         let models = self.models(contents);
-        let made =
-            Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &tables, scene.figure.point_px());
+        let (time, point_px) = (self.time(scene, contents)?, scene.figure.point_px());
+        let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &tables, &time, point_px);
         let mut operations = made.map_err(|error| ResolveError::Scene(error.to_string()))?;
         operations.contents.clone_from(&contents.uses);
         Ok(operations)
+    }
+}
+
+impl Surroundings<'_> {
+    /// Which moments show, and when objects are there.
+    fn time(&self, scene: &Scene, contents: &SceneContents) -> Result<SceneTime, ResolveError> {
+        let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;
+        if !epochs.is_any() {
+            return Ok(SceneTime::default());
+        }
+        let dating = &scene.city.dating;
+        let own = self.lifetimes.of(self.model, dating).map_err(ResolveError::Scene)?;
+        // Data sets that lenses show may have other attributes, or none.
+        let of_content = |model: &Arc<CityModel>| {
+            self.lifetimes.of(model, dating).unwrap_or_else(|_| Arc::new(Lifetimes::undated(model)))
+        };
+        let lifetimes = std::iter::once(own).chain(contents.models.iter().map(of_content)).collect();
+        Ok(SceneTime { epochs, lifetimes })
     }
 }
 

@@ -239,6 +239,7 @@ mod tests {
             placement,
             shapes: vec![],
             effects: vec![],
+            time: vec![],
             body: Default::default(),
             sprite: None,
             border: None,

@@ -254,6 +254,7 @@ mod tests {
             placement: Default::default(),
             shapes: vec![],
             effects: vec![],
+            time: vec![],
             body: Default::default(),
             sprite: None,
             border: None,

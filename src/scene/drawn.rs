@@ -86,6 +86,8 @@ impl Scene {
                     part.shapes.iter_mut().for_each(|shape| narrow(shape, &when[..=i]));
                     part.effects = Vec::clone(&inside);
                     part.kind.set_content(None);
+                    // What holds all of the area has its moment.
+                    part.time.clear();
                     (part.body, part.section) = (LensBody::None, None);
                     parts.push(part);
                 }
@@ -112,6 +114,7 @@ impl Scene {
                 sprite: None,
                 border: None,
                 section: None,
+                time: Vec::new(),
                 ..own
             });
         }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use crate::{
-    city::{Materials, load::Up},
+    city::{Materials, lifetime::Dating, load::Up},
     lens::{
         EffectUse, Lens,
         best_view::{Background, BaseStyle, StyleLook},
@@ -17,6 +17,7 @@ use crate::{
         trajectory::Trajectory,
         transparency::Transparency,
     },
+    time::Moment,
     view::Camera,
 };
 
@@ -33,6 +34,8 @@ pub struct Scene {
     pub sun: Sun,
     /// The moment that is shown, seconds: where what moves is.
     pub time_s: f64,
+    /// The moment of the calendar that is shown: which objects are there; `None`: all are.
+    pub moment: Option<Moment>,
     /// How the context looks.
     pub style: Style,
     /// The ways of what moves.
@@ -64,11 +67,20 @@ pub struct CitySpec {
     pub materials: Materials,
     /// Whether a plain ground is put under a city without terrain.
     pub ground: bool,
+    /// Which attributes say when its objects are there.
+    pub dating: Dating,
 }
 
 impl Default for CitySpec {
     fn default() -> Self {
-        Self { files: Vec::new(), lod: None, up: Up::default(), materials: Materials::Tamed, ground: true }
+        Self {
+            files: Vec::new(),
+            lod: None,
+            up: Up::default(),
+            materials: Materials::Tamed,
+            ground: true,
+            dating: Dating::default(),
+        }
     }
 }
 

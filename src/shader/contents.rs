@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use crate::shader::plan::{
     Plan,
     content::{Clip, PlanContent},
+    step::ClassTest,
 };
 
 /// The uniform that says which city is drawn.
@@ -33,10 +34,7 @@ pub(super) fn specialised(
         let PlanContent { lens, class, city, clip, keeps_terrain } = *content;
         let own = format!("{:#x}u", 1_u32 << city);
         let terrain = if keeps_terrain { " && fragment.part != PART_TERRAIN" } else { "" };
-        let is_there = match plan.border_of(lens).filter(|b| b.dithers) {
-            Some(_) => format!("is_dithered({}({}, {}), fragment.pixel)", class.share(), classes(lens), interest(lens)),
-            None => format!("{}({})", class.function(), classes(lens)),
-        };
+        let is_there = is_held(plan, lens, class, &classes, &interest);
         let _ = writeln!(text, "    if {is_there}{terrain} {{");
         let _ = match clip {
             Clip::Order => writeln!(text, "        shown = {own};"),
@@ -49,6 +47,20 @@ pub(super) fn specialised(
         text.push_str("    }\n");
     }
     text + "    return shown;\n}\n\n"
+}
+
+/// Whether a place is of a class of a lens, as a condition: of one with a soft border that dithers, by chance.
+pub(super) fn is_held(
+    plan: &Plan,
+    lens: u32,
+    class: ClassTest,
+    classes: &impl Fn(u32) -> String,
+    interest: &impl Fn(u32) -> String,
+) -> String {
+    match plan.border_of(lens).filter(|b| b.dithers) {
+        Some(_) => format!("is_dithered({}({}, {}), fragment.pixel)", class.share(), classes(lens), interest(lens)),
+        None => format!("{}({})", class.function(), classes(lens)),
+    }
 }
 
 /// The same from the invoker table; `runs` says whether an invoker, `by`, runs there. `handler` of an invoker is the city's number,

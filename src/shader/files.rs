@@ -5,9 +5,9 @@ use crate::shader::{
     library::{
         BLEND, BORDER, BORDER_WIDTH, CITIES, CLASS, CLEAR, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION,
         COMBINED_SPRITE, DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FORM, FRAGMENT, File,
-        GLASS, LENS, LENS_SPRITE, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, OBJECTS, ONE_CITY, OUTLINE,
-        OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT, SOLID_DISTANCE, SOLID_SPRITE,
-        STORED_SPRITE, SURFACE, TEXEL, TRANSPARENCY, VIEW, VIEW_UNIFORM,
+        GLASS, LENS, LENS_SPRITE, LIFETIME, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, MOMENT, OBJECTS,
+        ONE_CITY, OUTLINE, OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT,
+        SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE, SURFACE, TEXEL, TRANSPARENCY, VIEW, VIEW_UNIFORM,
     },
     plan::program::Program,
 };
@@ -15,20 +15,23 @@ use crate::shader::{
 /// A pass that draws the city and asks of each fragment what is there.
 pub(super) fn of_city(program: &Program, behind: &[File]) -> Vec<File> {
     let lenses = of_lenses(program);
-    [&[VIEW, VIEW_UNIFORM, SURFACE, SIGHT], &lenses[..], &[OBJECTS, FRAGMENT, vertices(program)], behind].concat()
+    let objects = of_objects(program);
+    [&[VIEW, VIEW_UNIFORM, SURFACE, SIGHT], &lenses[..], &objects, &[FRAGMENT, vertices(program)], behind].concat()
 }
 
 /// The same of translucent fragments, which keep colours.
 pub(super) fn of_translucent_city(program: &Program, behind: &[File]) -> Vec<File> {
     let lenses = of_lenses(program);
     let first = [VIEW, VIEW_UNIFORM, SURFACE, PACKED, TEXEL, SIGHT];
-    [&first, &lenses[..], &[OBJECTS, FRAGMENT, vertices(program)], behind].concat()
+    [&first, &lenses[..], &of_objects(program), &[FRAGMENT, vertices(program)], behind].concat()
 }
 
 /// The pass that draws lines, and what it calls.
 pub(super) fn of_lines(program: &Program) -> Vec<File> {
     let cities = vertices(program);
-    let mut files = vec![VIEW, VIEW_UNIFORM, SURFACE, COLOR, LIGHT, OBJECTS, POINT, SIGHT, FRAGMENT, cities, EDGE];
+    let mut files = vec![VIEW, VIEW_UNIFORM, SURFACE, COLOR, LIGHT];
+    files.extend(of_objects(program));
+    files.extend([POINT, SIGHT, FRAGMENT, cities, EDGE]);
     if program.has().blends {
         files.push(BLEND);
     }
@@ -66,9 +69,16 @@ pub(super) fn of_sections(program: &Program) -> Vec<File> {
         &of_lenses(program)[..],
         &of_spans(program)[..],
         program.has().combinations.then_some(COMBINED_SECTION).as_slice(),
-        &[OBJECTS, FRAGMENT, vertices(program), SECTIONS],
+        &of_objects(program)[..],
+        &[FRAGMENT, vertices(program), SECTIONS],
     ]
     .concat()
+}
+
+/// What is known of objects.
+pub(super) fn of_objects(program: &Program) -> Vec<File> {
+    let timed = program.has().timed;
+    used(&[(true, OBJECTS), (timed, MOMENT), (timed, LIFETIME)])
 }
 
 /// Where vertices stand: of the scene's own city, or also of contents.

@@ -87,6 +87,7 @@ impl Forward {
         let shading = [files::of_shading(&self.shading, handlers), vec![SHADE]].concat();
         let mut files = files::of_lenses(&self.hidden);
         files.retain(|file| !shading.contains(file));
+        files.extend(files::of_objects(&self.hidden).into_iter().filter(|file| !shading.contains(file)));
         files.extend([FRAGMENT, files::vertices(&self.hidden), GEOMETRY, TRANSLUCENT]);
         if !shading.contains(&DITHER) {
             files = files::with_threshold(files);

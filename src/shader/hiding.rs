@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use crate::shader::{
     contents,
     effect::{definition::EffectDefinition, prototype::EffectKind},
-    lens_test,
+    epochs, lens_test,
     library::{FRAGMENT_RUNS, FRAGMENT_RUNS_DITHERED, FRAGMENT_RUNS_EVERYWHERE, SHARE_OF_INVOKER},
     names::one_line,
     plan::{Plan, program::Program, step::Scope, uber::Uber},
@@ -58,6 +58,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         let source = if effect.kind == EffectKind::Opacity { effect.parameters_source() } else { &effect.source };
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, source.trim_end());
     }
+    text.push_str(&epochs::operators(program, handlers));
     let is_layers = matches!(eye, Eye::Layers | Eye::Fragments);
     match program {
         Program::Specialised(plan) => {
@@ -90,13 +91,12 @@ fn relative_to_main_eye(placed: &str) -> String {
 }
 
 /// `visible`, or `is_layer`, begins with this.
-fn head(has_contents: bool, is_layers: bool) -> String {
+fn head(has_contents: bool, timed: bool, is_layers: bool) -> String {
     let name = if is_layers { "is_layer" } else { "visible" };
-    let head = format!("fn {name}(fragment: Fragment) -> bool {{\n");
-    match has_contents {
-        false => head,
-        true => format!("{head}    if !({}) {{\n        return false;\n    }}\n", contents::is_shown("fragment")),
-    }
+    let shown = has_contents.then(|| format!("({})", contents::is_shown("fragment")));
+    let there = timed.then(|| "exists(fragment)".to_owned());
+    let asked = shown.into_iter().chain(there).map(|is| format!("    if !{is} {{\n        return false;\n    }}\n"));
+    format!("fn {name}(fragment: Fragment) -> bool {{\n") + &asked.collect::<String>()
 }
 
 fn call(handler: &EffectDefinition, first: &str) -> String {
@@ -112,6 +112,7 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
     let mut lenses: Vec<u32> =
         steps().filter_map(|(step, _)| if let Scope::Lens(lens, _) = step.scope { Some(lens) } else { None }).collect();
     lenses.extend(plan.contents.iter().map(|c| c.lens));
+    lenses.extend(plan.epochs.iter().map(|e| e.lens));
     lenses.sort_unstable();
     lenses.dedup();
     for lens in lenses {
@@ -128,12 +129,15 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
             let _ = writeln!(text, "fn interest_in_lens_{lens}(sight: Sight) -> f32 {{\n    return {interest};\n}}\n");
         }
     }
+    let of = |what: &str, lens: u32| format!("{what}_lens_{lens}(sight_of(fragment))");
+    let (classes, interest) = (|lens| of("classes_of", lens), |lens| of("interest_in", lens));
     if !plan.contents.is_empty() {
-        let of = |what: &str, lens: u32| format!("{what}_lens_{lens}(sight_of(fragment))");
-        let (classes, interest) = (|lens| of("classes_of", lens), |lens| of("interest_in", lens));
         text.push_str(&contents::specialised(plan, "fragment: Fragment", classes, interest));
     }
-    text.push_str(&head(!plan.contents.is_empty(), is_layers));
+    if plan.timed {
+        text.push_str(&epochs::specialised(plan, handlers, "fragment: Fragment", "fragment", classes, interest));
+    }
+    text.push_str(&head(!plan.contents.is_empty(), plan.timed, is_layers));
     // Behind all that hides: what is not there is not translucent.
     let mut material = if plan.clear_materials { clear_material(is_layers) } else { String::new() };
     for (step, handler) in steps() {
@@ -201,7 +205,11 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition], is
     if uber.contents {
         text.push_str(&contents::uber("fragment: Fragment", "runs(by, fragment)"));
     }
-    text.push_str(&head(uber.contents, is_layers));
+    if uber.timed {
+        let runs = "runs(by, fragment)";
+        text.push_str(&epochs::uber(&uber.epochs, handlers, "fragment: Fragment", "fragment", runs));
+    }
+    text.push_str(&head(uber.contents, uber.timed, is_layers));
     let is_clear = if uber.clear_materials { "fragment.opacity < 1.0" } else { "false" };
     match is_layers {
         true => {

@@ -100,6 +100,8 @@ files! {
     COMBINED_SPRITE = "lib/combined-sprite.wgsl";
     COMBINED_PASS = "pass/combined-sprite.wgsl";
     OBJECTS = "lib/objects.wgsl";
+    MOMENT = "lib/moment.wgsl";
+    LIFETIME = "lib/lifetime.wgsl";
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
     TRANSPARENCY = "lib/transparency.wgsl";

@@ -9,6 +9,7 @@ use std::fmt::Write as _;
 use crate::shader::{
     contents,
     effect::{definition::EffectDefinition, prototype::EffectKind},
+    epochs,
     invoke::{self, fades},
     lens_test,
     plan::{
@@ -34,6 +35,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         text.push_str(&contents::binding(3, 1, "city"));
         text.push('\n');
     }
+    text.push_str(&epochs::operators(program, handlers));
     for effect in program.effects().into_iter().map(|e| &handlers[e as usize]) {
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, effect.source.trim_end());
     }
@@ -47,6 +49,11 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
                     (|lens| format!("classes.lens_{lens}"), |lens| format!("classes.interest_{lens}"));
                 text.push_str(&contents::specialised(plan, PLACE, classes, interest));
             }
+            if plan.timed {
+                let (classes, interest) =
+                    (|lens| format!("classes.lens_{lens}"), |lens| format!("classes.interest_{lens}"));
+                text.push_str(&epochs::specialised(plan, handlers, PLACE, ARGUMENTS, classes, interest));
+            }
             specialised(&mut text, &writer);
         }
         Program::Uber(uber) => uber_source(&mut text, uber, handlers),
@@ -57,9 +64,14 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
 /// The parameters of `shown_cities`.
 const PLACE: &str = "fragment: Fragment, classes: Classes";
 
-/// A line of a city that does not show at its place.
-fn gone() -> String {
-    format!("    if !({}) {{\n        opacity = 0.0;\n    }}\n", contents::is_shown("fragment, classes"))
+const ARGUMENTS: &str = "fragment, classes";
+
+/// A line of a city that does not show at its place, or between faces that are both not there.
+fn gone(has_contents: bool, timed: bool) -> String {
+    let shown = has_contents.then(|| format!("({})", contents::is_shown(ARGUMENTS)));
+    let there = timed.then(|| format!("(exists({ARGUMENTS}) || exists(other, classes))"));
+    let of = |is: String| format!("    if !{is} {{\n        opacity = 0.0;\n    }}\n");
+    shown.into_iter().chain(there).map(of).collect()
 }
 
 fn parameters(handler: &EffectDefinition, first: &str) -> String {
@@ -136,9 +148,7 @@ fn specialised(text: &mut String, writer: &Writer) {
         }
     }
     text.push_str(&hidden);
-    if !writer.plan.contents.is_empty() {
-        text.push_str(&gone());
-    }
+    text.push_str(&gone(!writer.plan.contents.is_empty(), writer.plan.timed));
     text.push_str("    return vec4f(color, opacity);\n}\n");
 }
 
@@ -169,13 +179,13 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     let has_posts = uber.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Post);
     let share = invoke::share_argument(uber);
     let styled = if has_posts { format!("color = invoke_style(color, point, by{share});") } else { String::new() };
-    let gone = if uber.contents { gone() } else { String::new() };
-    text.push_str(&line_at(&styled, &gone));
+    text.push_str(&line_at(&styled, &gone(uber.contents, uber.timed)));
+    let runs = if fades(uber) { "is_there(by, fragment, classes)" } else { "runs(by, classes)" };
     if uber.contents {
-        text.push_str(&contents::uber(
-            PLACE,
-            if fades(uber) { "is_there(by, fragment, classes)" } else { "runs(by, classes)" },
-        ));
+        text.push_str(&contents::uber(PLACE, runs));
+    }
+    if uber.timed {
+        text.push_str(&epochs::uber(&uber.epochs, handlers, PLACE, ARGUMENTS, runs));
     }
     text.push_str(&if fades(uber) { [LINE_SHARE_FADED, IS_THERE].concat() } else { LINE_SHARE.to_owned() });
     text.push_str(LINE_KINDS);

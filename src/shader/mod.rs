@@ -11,6 +11,7 @@ mod contents;
 mod deforming;
 pub mod effect;
 pub mod effect_file;
+mod epochs;
 mod files;
 mod forms;
 mod forward;
@@ -50,6 +51,7 @@ pub use module::Module;
 pub use plan::{
     Plan,
     content::{Clip, MOST_CITIES, PlanContent},
+    epoch::PlanEpoch,
     form::Form,
     lens::{BodyKind, PlanBody, PlanBorder, PlanLens},
     lens_test::LensTest,

@@ -72,6 +72,16 @@ fn contents_of(seed: usize) -> Vec<PlanContent> {
     (0..if seed.is_multiple_of(2) { 0 } else { 2 }).map(content).collect()
 }
 
+/// What the two lenses do to the moment: nothing, or all that there is.
+fn epochs_of(seed: usize) -> Vec<PlanEpoch> {
+    let all = (0..).zip(handlers()).filter(|(_, handler)| handler.kind == EffectKind::Epoch).map(|(number, _)| number);
+    let of_lens = |lens: u32| all.clone().map(move |handler| PlanEpoch { lens, handler, words: 8 + handler % 9 });
+    match seed % 3 {
+        1 => of_lens(0).chain(of_lens(1)).collect(),
+        _ => Vec::new(),
+    }
+}
+
 /// A scene of the context and two lenses whose steps are these effects, in order; `seed` chooses classes, blends,
 /// bodies and masks. The modules that both back ends need for it.
 fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
@@ -104,6 +114,8 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         masks: seed.is_multiple_of(7),
         contents: contents_of(seed),
         clear_materials: seed.is_multiple_of(4),
+        timed: seed % 3 < 2,
+        epochs: epochs_of(seed),
         ..Plan::default()
     };
     let uber = Uber {
@@ -126,6 +138,8 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         transparency: false,
         clear_materials: plan.clear_materials,
         contents: !plan.contents.is_empty(),
+        timed: plan.timed,
+        epochs: Program::Specialised(plan.clone()).epochs(),
     };
     let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();
     let hiding = hiding.chain(uber.hiding(handlers()).map(Program::Uber));

@@ -86,8 +86,7 @@ impl Moment {
     pub fn floored(self, unit: Unit) -> Self {
         match unit {
             Unit::Months(months) => {
-                let (year, month, _) = self.date();
-                let count = i64::from(year) * 12 + i64::from(month) - 1;
+                let count = self.months();
                 Self::of_month(count - count.rem_euclid(months.into()))
             }
             Unit::Micros(micros) => {
@@ -100,14 +99,13 @@ impl Moment {
     /// The first full unit that is not before it: one that is full stays.
     #[must_use]
     pub fn ceiled(self, unit: Unit) -> Self {
-        let floor = self.floored(unit);
-        if floor == self {
+        if self.floored(unit) == self {
             return self;
         }
         match unit {
             Unit::Months(months) => {
-                let (year, month, _) = floor.date();
-                Self::of_month(i64::from(year) * 12 + i64::from(month) - 1 + i64::from(months))
+                let (count, months) = (self.months(), i64::from(months));
+                Self::of_month(count - count.rem_euclid(months) + months)
             }
             Unit::Micros(micros) => {
                 let since = self.0 - unit.origin();
@@ -120,6 +118,12 @@ impl Moment {
     #[must_use]
     pub fn at_time_of_day(self, micros: i64) -> Self {
         Self::within(self.0 - self.time_of_day() + micros)
+    }
+
+    /// Its month, counted from the start of the year 0.
+    fn months(self) -> i64 {
+        let (year, month, _) = self.date();
+        i64::from(year) * 12 + i64::from(month) - 1
     }
 
     /// The first moment of a month, counted from the start of the year 0.

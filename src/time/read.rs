@@ -5,7 +5,8 @@ use jiff::civil;
 use crate::time::{DAY, Granularity, HOUR, Interval, MINUTE, Moment, SECOND, Span};
 
 /// What would be right.
-const RIGHT: &str = "a year, a date or a date-time as in \"1890\", \"1890-05-03\" or \"1890-05-03T14:00\" would be right";
+const RIGHT: &str =
+    "a year, a date or a date-time as in \"1890\", \"1890-05-03\" or \"1890-05-03T14:00\" would be right";
 
 /// Whole numbers beyond this are seconds, milliseconds or microseconds since 1970.
 const SECONDS: i64 = 100_000_000_000;
@@ -78,7 +79,8 @@ fn side(text: &str, whole: &str) -> Result<Option<Interval>, String> {
 /// Without a word that says *about*, and whether there was one.
 fn without_about(text: &str) -> (&str, bool) {
     for word in ["circa", "about", "ca.", "ca", "c.", "c", "~"] {
-        if let Some(rest) = text.get(..word.len()).filter(|head| head.eq_ignore_ascii_case(word)).map(|_| &text[word.len()..])
+        if let Some(rest) =
+            text.get(..word.len()).filter(|head| head.eq_ignore_ascii_case(word)).map(|_| &text[word.len()..])
             && rest.trim_start().starts_with(|c: char| c.is_ascii_digit())
         {
             return (rest.trim_start(), true);
@@ -112,7 +114,11 @@ fn year(text: &str) -> Option<Interval> {
     let known = digits.trim_end_matches(['X', 'U']);
     let unknown = (digits.len() - known.len()) as u32;
     // Fewer than four are the day or the month of something else.
-    if digits.len() > 4 || (digits.len() < 4 && long.is_none()) || !known.bytes().all(|b| b.is_ascii_digit()) || known.is_empty() {
+    if digits.len() > 4
+        || (digits.len() < 4 && long.is_none())
+        || !known.bytes().all(|b| b.is_ascii_digit())
+        || known.is_empty()
+    {
         return None;
     }
     if unknown == 0 {
@@ -232,7 +238,9 @@ fn of_clock(text: &str) -> Option<(i64, i64, Granularity)> {
         [h, m, s] => [number(h, 24)?, number(m, 59)?, number(s, 60)?],
         _ => return None,
     };
-    if (!part.is_empty() || clock.ends_with(['.', ','])) && digits.len() != 3 || !part.bytes().all(|b| b.is_ascii_digit()) {
+    if (!part.is_empty() || clock.ends_with(['.', ','])) && digits.len() != 3
+        || !part.bytes().all(|b| b.is_ascii_digit())
+    {
         return None;
     }
     let fraction = format!("{part:0<6}")[..6].parse::<i64>().ok()?;
@@ -248,6 +256,12 @@ fn of_clock(text: &str) -> Option<(i64, i64, Granularity)> {
         _ => (1, Granularity::Micro),
     };
     Some((micros - ahead, long, granularity))
+}
+
+/// A time of day without an offset, microseconds.
+pub(super) fn time_of_day(text: &str) -> Option<i64> {
+    let is_clock = text.bytes().all(|b| b.is_ascii_digit() || b".:".contains(&b)) && text.contains(':');
+    of_clock(text).map(|(micros, ..)| micros).filter(|micros| is_clock && *micros < DAY)
 }
 
 /// How far a clock is ahead of UTC, microseconds.
@@ -350,9 +364,32 @@ mod tests {
     #[test]
     fn what_is_no_time_is_told() {
         for text in [
-            "", "unknown", "18", "189-05", "1890-13", "1890-02-30", "1900-02-29", "10000", "Y17000", "05/1890", "1895/1890", "XXXX",
-            "1890-05-03T25:00", "1890-05-03T24:01", "1890-05-03T12:60", "1890-05-03T12:00.5", "1890-05-03T", "1890 AD BC", "0 BCE", "1895s",
-            "1895-1890", "2010-07-15T09:28:35+25:00", "1890-05-03T12:00:00.x", "é", "1890é", "cé1890",
+            "",
+            "unknown",
+            "18",
+            "189-05",
+            "1890-13",
+            "1890-02-30",
+            "1900-02-29",
+            "10000",
+            "Y17000",
+            "05/1890",
+            "1895/1890",
+            "XXXX",
+            "1890-05-03T25:00",
+            "1890-05-03T24:01",
+            "1890-05-03T12:60",
+            "1890-05-03T12:00.5",
+            "1890-05-03T",
+            "1890 AD BC",
+            "0 BCE",
+            "1895s",
+            "1895-1890",
+            "2010-07-15T09:28:35+25:00",
+            "1890-05-03T12:00:00.x",
+            "é",
+            "1890é",
+            "cé1890",
         ] {
             let wrong = Interval::parse(text).expect_err(text);
             assert!(wrong.contains("would be right"), "{wrong}");

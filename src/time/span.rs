@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::time::{DAY, HOUR, MINUTE, SECOND};
 
-/// How long: whole months, whose length the calendar knows, and microseconds; both of one sign, or any.
+/// How long: whole months, whose length the calendar knows, and microseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Span {
     months: i32,
@@ -32,6 +32,11 @@ const MOST_MONTHS: i64 = 12 * 20_000;
 const MOST_MICROS: i64 = 20_000 * 366 * DAY;
 
 impl Span {
+    /// Months, then microseconds.
+    pub fn new(months: i32, micros: i64) -> Self {
+        Self { months, micros }
+    }
+
     /// Months alone.
     pub fn of_months(months: i32) -> Self {
         Self { months, micros: 0 }
@@ -42,6 +47,15 @@ impl Span {
         Self { months: 0, micros }
     }
 
+    /// Reads a time of day, `14:30` or `14:30:05.5`, as the span since midnight.
+    ///
+    /// # Errors
+    /// It is none, or not less than 24 hours: what would be right.
+    pub fn of_clock(text: &str) -> Result<Self, String> {
+        let micros = super::read::time_of_day(text.trim());
+        micros.map(Self::of_micros).ok_or_else(|| format!("\"{text}\" is no time of day; \"14:30\" would be right"))
+    }
+
     /// Its months.
     pub fn months(self) -> i32 {
         self.months
@@ -50,6 +64,12 @@ impl Span {
     /// Microseconds beside its months.
     pub fn micros(self) -> i64 {
         self.micros
+    }
+
+    /// How long it is on the mean of the calendar's 400 years, microseconds: a year is 365.2425 days, a month a twelfth of that.
+    pub fn mean_micros(self) -> i64 {
+        const MONTH: i64 = 2_629_746 * SECOND;
+        i64::from(self.months) * MONTH + self.micros
     }
 
     /// Whether it is none at all.
@@ -68,7 +88,11 @@ impl Span {
     /// # Errors
     /// It is none, or longer than 20,000 years: what would be right.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let wrong = || format!("\"{text}\" is no span of time; \"10 years\", \"-6 months\", \"1 h 30 min\" or \"P10Y\" would be right");
+        let wrong = || {
+            format!(
+                "\"{text}\" is no span of time; \"10 years\", \"-6 months\", \"1 h 30 min\" or \"P10Y\" would be right"
+            )
+        };
         let trimmed = text.trim();
         let (sign, rest) = match trimmed.strip_prefix(['-', '−']) {
             Some(rest) => (-1, rest.trim_start()),
@@ -161,10 +185,12 @@ fn iso_parts(text: &str) -> Option<Vec<(Amount<'_>, i64, i64)>> {
 }
 
 impl fmt::Display for Span {
-    /// As [`Span::parse`] reads it: the largest units that make it up.
+    /// As [`Span::parse`] reads it, where both parts have one sign: the largest units that make it up.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let is_mixed = self.months != 0 && self.micros != 0 && (self.months < 0) != (self.micros < 0);
-        debug_assert!(!is_mixed, "spans are read with one sign");
+        if is_mixed {
+            return write!(f, "{} and {}", Self::of_months(self.months), Self::of_micros(self.micros));
+        }
         let mut months = i64::from(self.months).abs();
         let mut micros = self.micros.abs();
         let mut words = Vec::new();
@@ -216,7 +242,19 @@ mod tests {
             assert_eq!(own.cast_signed(), months);
             assert_eq!(i64::from(hours.cast_signed()) * HOUR + i64::from(rest), micros);
         }
-        for text in ["", "10", "ten years", "1.5 months", "P", "PT", "P1H", "1 year -2 days", "99999999999999999999 s", "21000 years", "0.3333333 s"] {
+        for text in [
+            "",
+            "10",
+            "ten years",
+            "1.5 months",
+            "P",
+            "PT",
+            "P1H",
+            "1 year -2 days",
+            "99999999999999999999 s",
+            "21000 years",
+            "0.3333333 s",
+        ] {
             assert!(Span::parse(text).is_err(), "{text}");
         }
     }

@@ -25,7 +25,9 @@ impl Unit {
         match (span.months(), span.micros()) {
             (months, 0) if months > 0 => Ok(Self::Months(months)),
             (0, micros) if micros > 0 => Ok(Self::Micros(micros)),
-            _ => Err(format!("\"{span}\" is no unit; \"year\", \"10 years\", \"month\", \"day\" or \"15 min\" would be right")),
+            _ => Err(format!(
+                "\"{span}\" is no unit; \"year\", \"10 years\", \"month\", \"day\" or \"15 min\" would be right"
+            )),
         }
     }
 

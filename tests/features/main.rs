@@ -63,6 +63,7 @@ mod studio;
 mod techniques;
 mod thematic;
 mod tiles;
+mod time;
 mod transparency;
 mod warnings;
 mod wrong_input;

@@ -214,6 +214,7 @@ pub fn lens(name: &str, shapes: impl IntoIterator<Item = impl Into<Region>>, eff
         placement: Default::default(),
         shapes: shapes.into_iter().map(Into::into).collect(),
         effects: vec![used(effect)],
+        time: vec![],
         body: LensBody::None,
         sprite: None,
         border: None,

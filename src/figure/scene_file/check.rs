@@ -7,6 +7,7 @@ use glam::DVec3;
 use crate::{
     city::Lod,
     figure::scene_file::{
+        epoch::moment,
         forms::{color, numbers, parameter},
         keys::{FAR_M, Key, Kind, Table},
         node::{Data, Node},
@@ -192,6 +193,7 @@ impl<'a> Fields<'a> {
 fn most_of(kind: &Kind) -> usize {
     match kind {
         Kind::Shapes | Kind::Effects | Kind::Tests | Kind::Steps => 1024,
+        Kind::Operators => 64,
         Kind::Tables(_) => 4096,
         _ => usize::MAX,
     }
@@ -265,7 +267,8 @@ fn wrong(kind: &Kind, node: &Node) -> Option<String> {
             let of = if matches!(kind, Kind::Shares) { ParameterKind::Shares } else { ParameterKind::Colors };
             parameter(node).is_some_and(|value| problem_with(&of, &value).is_none())
         }
-        Kind::Tests | Kind::Steps => node.list().is_some_and(|l| !l.is_empty()),
+        Kind::Moment => return moment(node).err(),
+        Kind::Tests | Kind::Steps | Kind::Operators => node.list().is_some_and(|l| !l.is_empty()),
         Kind::Rendering => return wrong_rendering(kind, node),
         Kind::WordOrPlace(words) => match &node.data {
             Data::List(_) => node.numbers::<2>().is_some_and(|v| v.iter().all(|c| (0.0..=1.0).contains(c))),

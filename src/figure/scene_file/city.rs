@@ -76,6 +76,42 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
         Same,
         |city: CitySpec| city.ground
     ),
+    field!(
+        key(
+            "from",
+            Kind::Text,
+            "the first that the city has of names that registers use",
+            "",
+            "The attribute that says since when an object is there; one without it takes its parent's. See Time.",
+            "\"yearOfConstruction\"",
+        ),
+        Same,
+        |city: CitySpec| city.dating.from
+    ),
+    field!(
+        key(
+            "until",
+            Kind::Text,
+            "the first that the city has of names that registers use",
+            "",
+            "The attribute that says until when an object is there, not included.",
+            "\"yearOfDemolition\"",
+        ),
+        Same,
+        |city: CitySpec| city.dating.until
+    ),
+    field!(
+        key(
+            "undated",
+            Kind::Word { now: &["show", "hide"], later: &["ghost"] },
+            "\"show\"",
+            "",
+            "What becomes of objects without a date where a moment is shown; terrain, roads, water and land use without one always show.",
+            "\"hide\"",
+        ),
+        Word,
+        |city: CitySpec| city.dating.undated
+    ),
 ];
 
 /// `[sun]`.

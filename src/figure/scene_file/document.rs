@@ -28,8 +28,11 @@ use crate::{
     },
     lens::{effect::LOD, measures::MEASURES, ramp::RAMPS, rendering::ROWS},
     shader::{
-        Blend,
-        effect::{EffectKind, MAX_RAMP, ParameterDefinition, ParameterKind, PerObject, effects as all_effects},
+        Blend, EffectDefinition,
+        effect::{
+            AskedBy, EffectKind, MAX_RAMP, ParameterDefinition, ParameterKind, PerObject, asked_for,
+            effects as all_effects,
+        },
     },
 };
 
@@ -88,6 +91,10 @@ pub fn reference() -> String {
         let _ = write!(out, "### {}\n\n{}\n\n", table.name, table.doc);
         rows(&mut out, table.keys);
     }
+    out += "## Time operators\n\nThe tables in `time` of a lens: `op` names one of these, or one of your own ([effects.md](effects.md)). See Time.\n\n";
+    for operator in asked_for(AskedBy::Times).filter(|operator| !operator.is_users) {
+        handler(&mut out, operator);
+    }
     out += "## Detection tests\n\nThe table `test` of an occlusion lens. The box of an object is the one (edges along x, y, z) around what is shown of it and its parts;\n\
             all tests but `exact` and `route` count an object whose box holds the eye. What others stand on (terrain, water, roads, land use) is never asked.\n\n";
     for table in TESTS {
@@ -141,14 +148,7 @@ pub fn effects_reference() -> String {
         }
         let _ = write!(out, "## {}s\n\n", capital(kind.name()));
         for effect in all_effects().filter(|e| e.kind == kind) {
-            let _ = write!(out, "### {}\n\n{} ({})\n\n", effect.name, effect.doc, effect.spec);
-            out += "| parameter | takes | unit | default | meaning |\n| --- | --- | --- | --- | --- |\n";
-            for p in &effect.parameters {
-                let default = if p.is_required() { "must be given".to_owned() } else { p.default_text() };
-                let takes = cell(&p.kind.describe());
-                let _ = writeln!(out, "| `{}` | {takes} | {} | {default} | {} |", p.name, p.unit, p.doc);
-            }
-            out.push('\n');
+            handler(&mut out, effect);
             if effect.objects == Some(PerObject::Colors) {
                 ramps(&mut out);
                 measures(&mut out);
@@ -156,6 +156,18 @@ pub fn effects_reference() -> String {
         }
     }
     out
+}
+
+/// A handler and its parameters.
+fn handler(out: &mut String, of: &EffectDefinition) {
+    let _ = write!(out, "### {}\n\n{} ({})\n\n", of.name, of.doc, of.spec);
+    *out += "| parameter | takes | unit | default | meaning |\n| --- | --- | --- | --- | --- |\n";
+    for p in &of.parameters {
+        let default = if p.is_required() { "must be given".to_owned() } else { p.default_text() };
+        let takes = cell(&p.kind.describe());
+        let _ = writeln!(out, "| `{}` | {takes} | {} | {default} | {} |", p.name, p.unit, p.doc);
+    }
+    out.push('\n');
 }
 
 /// The ramps, for `docs/effects.md`.
@@ -352,6 +364,13 @@ fn of_kind(kind: &Kind) -> Value {
         Kind::Test => json!({ "$ref": TEST }),
         Kind::View => by(VIEWS, "kind"),
         Kind::Handler => json!({ "type": "object", "required": ["kind"] }),
+        Kind::Moment => json!({ "type": ["string", "integer"] }),
+        Kind::Operators => {
+            let names: Vec<&str> = asked_for(AskedBy::Times).filter(|h| !h.is_users).map(|h| h.name.as_str()).collect();
+            let op = json!({ "anyOf": [{ "enum": names }, { "type": "string" }] });
+            let one = json!({ "type": "object", "properties": { "op": op }, "required": ["op"] });
+            json!({ "type": "array", "items": one, "minItems": 1 })
+        }
         Kind::Steps => json!({ "type": "array", "items": by(STEPS, "kind"), "minItems": 1 }),
         Kind::Tests => json!({ "type": "array", "items": { "$ref": TEST }, "minItems": 1 }),
         Kind::Rendering => {
@@ -464,6 +483,9 @@ fn of_parameter(kind: &ParameterKind) -> Value {
         }
         ParameterKind::Shares => of_kind(&Kind::Shares),
         ParameterKind::Colors => of_kind(&Kind::Colors),
+        ParameterKind::Moment | ParameterKind::Span | ParameterKind::Unit | ParameterKind::Clock => {
+            json!({ "type": "string", "minLength": 1 })
+        }
     }
 }
 

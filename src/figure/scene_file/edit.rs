@@ -524,7 +524,7 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
             ("lens..x=3", "has an empty part"),
             ("camera.eye=", "has no value after the ="),
             ("veduta.x=3", "\"veduta\" is 1: there is no \"x\" in it"),
-            ("time.at=3", "[time] at: unknown key; did you mean \"at_s\"?"),
+            ("time.at=3", "[time] at: must be a time: \"1890\""),
         ] {
             let message = after(assignment).unwrap_err();
             assert!(message.contains(expected), "{assignment}: {message}");

@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use crate::{
-    city::{Materials, load::Up},
+    city::{Materials, lifetime::Undated, load::Up},
     figure::scene_file::node::{Data, Node},
     lens::{
         BorderUnit, Class, Discrete, LensBody, Parameter,
@@ -245,6 +245,7 @@ words! {
     Along: Self::WORDS;
     Up: Self::WORDS;
     Materials: Self::WORDS;
+    Undated: Self::WORDS;
     Sizes: Self::WORDS;
     BuiltInFrame: Self::WORDS;
     LineKind: Self::WORDS;

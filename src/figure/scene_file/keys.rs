@@ -95,6 +95,10 @@ pub enum Kind {
     View,
     /// Detection tests.
     Tests,
+    /// A moment of the calendar, as a text or as a year.
+    Moment,
+    /// Time operators: a list of tables `{ op = NAME, ... }`.
+    Operators,
     /// Steps of a deformation: tables of [`super::deformation::STEPS`].
     Steps,
     /// A user's handler: a table `{ kind = NAME, ... }`.
@@ -204,6 +208,8 @@ impl Kind {
             Self::Shares => ParameterKind::Shares.describe(),
             Self::Colors => ParameterKind::Colors.describe(),
             Self::Tests => "a list of at least one test".into(),
+            Self::Moment => ParameterKind::Moment.describe(),
+            Self::Operators => "a list of at least one step { op = ..., ... }".into(),
             Self::Steps => "a list of at least one step { kind = ..., ... }".into(),
             Self::Rendering => {
                 let words: Vec<String> = Rendering::words().map(|word| format!("\"{word}\"")).collect();

@@ -8,6 +8,7 @@ use crate::{
         content::{self, CONTENT},
         deformation::{self, CONTROL, CONTROL_WORDS},
         effects::{self, without_sights},
+        epoch,
         forms::{Color, Same, Word, lens_color},
         keys::{Kind, Table, key},
         node::{Data, Node},
@@ -43,11 +44,11 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "kind",
             Kind::Word {
                 now: LensKind::WORDS,
-                later: &["time", "magnifier", "feature", "sampling", "fisheye"],
+                later: &["magnifier", "feature", "sampling", "fisheye"],
             },
             "\"color\"",
             "",
-            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses, `deformation` moves what is in it, see Deformation lenses. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
+            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses, `deformation` moves what is in it, see Deformation lenses, `time` shows another moment in it, see Time. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
             "\"color\"",
         ),
         |lens, _| Some(lens.kind.word().into()),
@@ -141,6 +142,17 @@ const LENS_ROWS: &[Row<Lens>] = &[
         |lens, _| effects::listed(&lens.effects),
     )
     .after("poi_effects"),
+    Row::<Lens>::joint(
+        key(
+            "time",
+            Kind::Operators,
+            "the moment that shows below",
+            "",
+            "Which moment shows in it, of the one that shows below it: time operators, one after the other; see Time. A lens of any kind may have some, a `time` lens must. Of a lens with an overlay, which moment its view shows.",
+            "[{ op = \"set\", at = \"1650\" }]",
+        ),
+        |lens, _| epoch::written(lens),
+    ),
     Row::<Lens>::joint(
         key("poi", Kind::Names, "none", "", "The name of a `[[poi]]`, or several. Of an occlusion lens: what shall be seen; it never hides itself. Of a lens with an overlay: what the overlay is tied to by context lines; a view is of the first of them.", "\"hall\""),
         |lens, options| lens.best_view().and_then(best_view::pois).or_else(|| occluders(lens, "poi", options)),
@@ -541,6 +553,12 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Lens {
         reader.checker.note(&fields.place, "above_ground", fields.line("above_ground"), message);
     }
     lens.kind.set_content(content::read(reader, fields, of_effects));
+    lens.time = epoch::read(reader, fields);
+    if matches!(lens.kind, LensKind::Time(_)) && !fields.given("time") {
+        let message =
+            "is missing: which moment shows in the lens. For example time = [{ op = \"set\", at = \"1650\" }]";
+        reader.checker.note(&fields.place, "time", fields.place.line, message);
+    }
     let is_saved = |shape: &Region| matches!(shape, Region::Sprite { .. });
     let has_saved = lens.shapes.iter().any(|s| s.any(&is_saved));
     lens.sprite = sprite::read(reader, fields, has_saved && lens.shapes.iter().all(is_saved));

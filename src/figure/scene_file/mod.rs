@@ -16,6 +16,7 @@ pub mod deformation;
 pub mod document;
 pub mod edit;
 mod effects;
+mod epoch;
 mod figure;
 mod forms;
 mod given_keys;

@@ -86,6 +86,7 @@ fn key_of(of: ParameterDefinition) -> Key {
         ParameterKind::Color => Kind::Color,
         ParameterKind::Vector => Kind::Point,
         ParameterKind::Text | ParameterKind::Texts => Kind::Names,
+        ParameterKind::Moment | ParameterKind::Span | ParameterKind::Unit | ParameterKind::Clock => Kind::Text,
         ParameterKind::Numbers => Kind::Numbers,
         ParameterKind::Shares => Kind::Shares,
         ParameterKind::Colors => Kind::Colors,

@@ -5,15 +5,18 @@ use proptest::prelude::*;
 
 use super::{tests::read_text, *};
 use crate::{
-    city::derived::{Derive, Form, Height},
+    city::{
+        derived::{Derive, Form, Height},
+        lifetime::{Dating, Undated},
+    },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
-        BestView, Border, BorderUnit, Class, Content, Copied, Deform, Discrete, EffectUse, Lens, LensBody, LensKind,
-        LensSprite, Occluders, OwnEye, Parameter, Placement, Region, Rendering,
+        BestView, Border, BorderUnit, Class, Content, Copied, Deform, Discrete, EffectUse, Handled, Lens, LensBody,
+        LensKind, LensSprite, Occluders, OwnEye, Parameter, Placement, Region, Rendering,
         best_view::{Depiction, LocalView, Look, MapMode},
         chosen::Choice,
         deform::{BORDER, ControlProfile, Step},
-        kind::{Deformation, Occlusion},
+        kind::{Deformation, Occlusion, TimeLens},
         rendering::{Case, ROWS, When},
         sprite::{Format, Mapping},
     },
@@ -30,6 +33,7 @@ use crate::{
         Blend, Clip, EffectKind,
         effect::{ParameterDefinition, ParameterKind, find},
     },
+    time::{self, Moment, Span},
     view::{
         Camera, Projection,
         path::{self, CameraKey, Speed},
@@ -354,13 +358,41 @@ fn deforms() -> impl Strategy<Value = Deform> {
         .prop_map(|(steps, control, strength)| Deform { steps, control, strength })
 }
 
+/// Time operators of a lens, in few of them.
+fn operators() -> impl Strategy<Value = Vec<Handled>> {
+    let of = |op: &str, parameters: Vec<(&str, String)>| Handled {
+        handler: op.to_owned(),
+        parameters: parameters.into_iter().map(|(key, text)| (key.to_owned(), Parameter::Text(text))).collect(),
+    };
+    let moment =
+        || (Moment::FIRST.micros()..=Moment::LAST.micros()).prop_map(|micros| Moment::from_micros(micros).unwrap());
+    let one = prop_oneof![
+        moment().prop_map(move |at| of("set", vec![("at", at.written())])),
+        (-99..99i32).prop_map(move |months| of("shift", vec![("by", Span::of_months(months).to_string())])),
+        (1..99i64).prop_map(move |days| of("ceil", vec![("unit", Span::of_micros(days * time::DAY).to_string())])),
+        (1..99i32).prop_map(move |months| of(
+            "floor",
+            vec![("unit", Span::of_months(months).to_string()), ("by", "1 day".into())]
+        )),
+        (0..1440u32).prop_map(move |minute| of(
+            "time-of-day",
+            vec![("time", format!("{:02}:{:02}", minute / 60, minute % 60))]
+        )),
+        (1..999i64).prop_map(move |year| of(
+            "loop",
+            vec![("begin", Moment::of_year(year).unwrap().written()), ("end", "1000".into())]
+        )),
+    ];
+    prop_oneof![4 => Just(vec![]), 1 => prop::collection::vec(one, 1..4)]
+}
+
 prop_compose! {
     fn lenses()(occluded in prop::option::weighted(0.3, occluded()),
         shapes in prop::collection::vec(regions(), 1..3), used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
         section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>(), at_rest in any::<bool>(),
-        deform in prop::option::weighted(0.3, deforms())) -> Lens {
+        deform in prop::option::weighted(0.3, deforms()), time in operators()) -> Lens {
         // A soft border needs shapes that have a distance; what shapes of files have, `sprite` does not give.
         let is_saved = |s: &Region| matches!(s, Region::Sprite { .. });
         let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
@@ -376,8 +408,11 @@ prop_compose! {
             shapes = if deform.is_of_objects() { vec![] } else { shapes };
             kind = Deformation::from(deform).into();
         }
+        if !time.is_empty() && matches!(kind, LensKind::Color(_)) {
+            kind = TimeLens::default().into();
+        }
         kind.set_content(content);
-        Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, body, sprite, border, keeps_shadows, at_rest, section }
+        Lens { name: String::new(), kind, enabled, color, placement, shapes, effects: used, time, body, sprite, border, keeps_shadows, at_rest, section }
     }
 }
 
@@ -511,7 +546,7 @@ prop_compose! {
         text in prop::option::of((6.0..=180.0f64, any::<bool>())), dpi in prop::option::of(72.0..=150.0f64),
         paper in prop::option::of(prop_oneof![
             prop::array::uniform2(5.0..500.0f64).prop_map(Paper::Millimetres), prop::sample::select(Column::WORDS.map(|(_, c)| Paper::Column(c)).to_vec())]),
-        pixels in prop::array::uniform2(100..2000u32)) -> Figure {
+        pixels in prop::array::uniform2(100..2000u32).prop_map(|[width, height]| [width, height.min(7 * width)])) -> Figure {
         let [title_at, caption_at] = wanted;
         let [legend, scale_bar, north_arrow] = places;
         // Points of a paper without dots of its own are those of 300.
@@ -580,7 +615,8 @@ prop_compose! {
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
         shown in prop::collection::vec((shown(), prop::option::of(overlays())), 0..3), layout in prop::option::of(layouts()), figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), chord_px in prop_oneof![Just(0.25), 0.02..=100.0f64], ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
-        (animation, ways, time_s) in (prop::option::of(animations()), prop::collection::vec(ways(), 0..3), -1e6..1e6f64)) -> Scene {
+        (animation, ways, time_s) in (prop::option::of(animations()), prop::collection::vec(ways(), 0..3), -1e6..1e6f64),
+        (moment, from, undated) in (prop::option::of(Moment::FIRST.micros()..=Moment::LAST.micros()), prop::option::of("[a-z]{1,5}"), any::<bool>())) -> Scene {
         let projection_of = |tenths: u32, ortho: bool| match ortho {
             true => Projection::Orthographic { height_m: f64::from(tenths) },
             false => Projection::Perspective { fov_y: (f64::from(tenths) / 10.0).to_radians() },
@@ -605,7 +641,7 @@ prop_compose! {
         let mut overlays = Vec::new();
         if !shown.is_empty() {
             pois.resize(2, ("o".into(), DVec3::ONE, true));
-            let plain = Lens { name: String::new(), kind: LensKind::default(), enabled: true, color: [0.5; 3], placement: Placement::World, shapes: vec![Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }.into()], effects: vec![], body: LensBody::Outline, sprite: None, border: None, keeps_shadows: false, at_rest: false, section: None };
+            let plain = Lens { name: String::new(), kind: LensKind::default(), enabled: true, color: [0.5; 3], placement: Placement::World, shapes: vec![Shape::Sphere { center: DVec3::ZERO, radius: 1.0 }.into()], effects: vec![], time: vec![], body: LensBody::Outline, sprite: None, border: None, keeps_shadows: false, at_rest: false, section: None };
             while lenses.len() < 2 {
                 lenses.push(Lens { name: format!("n\"{}\\ü", lenses.len()), ..plain.clone() });
             }
@@ -623,6 +659,7 @@ prop_compose! {
         let mut scene = Scene {
             trajectories: ways.into_iter().enumerate().map(|(i, way)| Trajectory { name: format!("w{i}"), ..way }).collect(),
             time_s,
+            moment: moment.and_then(Moment::from_micros),
             overlays,
             layout: layout.unwrap_or_default(),
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
@@ -638,6 +675,7 @@ prop_compose! {
         scene.city.files = files.into_iter().filter(|f| !f.contains("${")).map(Into::into).collect();
         scene.city.lod = lod.map(|tenths| crate::city::Lod { tenths }.to_string());
         scene.city.ground = ground;
+        scene.city.dating = Dating { until: from.clone().filter(|_| clay), from, undated: if undated { Undated::Hide } else { Undated::Show } };
         scene
     }
 }

@@ -69,7 +69,16 @@ fn every_mistake_names_its_line_place_and_remedy() {
         ("veduta = 2", "s.toml:1: veduta: must be 1, is 2"),
         ("veduta = 1\nx = [", "s.toml:2: "),
         ("veduta = 1\n\n[camra]\n", "s.toml:3: camra: unknown key; did you mean \"camera\"?"),
-        ("veduta = 1\n[time]\nat = 3\n", "[time] at: unknown key; did you mean \"at_s\"?"),
+        (
+            "veduta = 1\n[time]\nat = 3\n",
+            "[time] at: must be a time: \"1890\", \"1890-05-03\" or \"1890-05-03T14:00\", is 3",
+        ),
+        (
+            "veduta = 1\n[time]\nat = \"1890-13\"\n",
+            "[time] at: \"1890-13\" is no time; a year, a date or a date-time as in",
+        ),
+        ("veduta = 1\n[time]\nat = \"../1890\"\n", "[time] at: \"../1890\" has no beginning"),
+        ("veduta = 1\n[city]\nundated = \"gone\"\n", "[city] undated: must be \"show\" or \"hide\", is \"gone\""),
         ("veduta = 1\ncity = 3\n", "city: must be a table, is 3"),
         (
             "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]",
@@ -324,7 +333,25 @@ fn every_mistake_in_a_lens_is_named() {
     for (lines, expected) in [
         (
             "kind = \"time\"",
-            "s.toml:4: [lens.0] kind: \"time\" is not available yet; available: color, content, occlusion, deformation",
+            "s.toml:2: [lens.0] time: is missing: which moment shows in the lens. For example time = [{ op = \"set\", at = \"1650\" }]",
+        ),
+        (
+            "time = [{ op = \"sett\", at = \"1650\" }]",
+            "s.toml:4: [lens.0] time.0.op: there is no handler \"sett\"; did you mean \"set\"?",
+        ),
+        (
+            "time = [{ op = \"set\", at = \"1650\" }, { op = \"shift\", by = \"10\" }]",
+            "s.toml:4: [lens.0] time.1.by: \"10\" is no span of time",
+        ),
+        ("time = []", "s.toml:4: [lens.0] time: must be a list of at least one step { op = ..., ... }, is []"),
+        ("time = [{ at = \"1650\" }]", "s.toml:4: [lens.0] time.0.op: is missing: which operator"),
+        (
+            "time = [{ op = \"loop\", begin = \"1900\", end = \"1800\" }]",
+            "s.toml:4: [lens.0] time.0: end must be later than begin = 1900, is 1800",
+        ),
+        (
+            "kind = \"magnifier\"",
+            "s.toml:4: [lens.0] kind: \"magnifier\" is not available yet; available: color, content, occlusion, deformation, time",
         ),
         ("kind = \"deformation\"", "[lens.0] deform: is missing: what the lens does with space; for example deform ="),
         (
@@ -366,7 +393,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "kind = \"colour\"",
-            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"colour\"; did you mean \"color\"?",
+            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"colour\"; did you mean \"color\"?",
         ),
         (
             "placement = \"camara\"",
@@ -483,11 +510,11 @@ fn of_a_lens_of_a_wrong_kind_only_that_is_told() {
     for (kind, expected) in [
         (
             "occlusionn",
-            "must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?",
+            "must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?",
         ),
         (
             "magnifier",
-            "\"magnifier\" is not available yet; available: color, content, occlusion, deformation, annotation, best-view, map-view, worldlet, see-through, portal",
+            "\"magnifier\" is not available yet; available: color, content, occlusion, deformation, time, annotation, best-view, map-view, worldlet, see-through, portal",
         ),
     ] {
         let message = read_text(&lens_text(&format!("{rest}\nkind = \"{kind}\""))).unwrap_err();

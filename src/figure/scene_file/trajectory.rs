@@ -24,21 +24,35 @@ const SLOWEST: f64 = 1e-6;
 
 /// `[time]`.
 pub const TIME: Table =
-    Table { name: "time", doc: "Which moment is shown; see Moving points.", keys: keys_of!(TIME_ROWS) };
+    Table { name: "time", doc: "Which moment is shown; see Time, and Moving points.", keys: keys_of!(TIME_ROWS) };
 
 /// Its rows.
-pub const TIME_ROWS: &[Row<Scene>] = &[field!(
-    key(
-        "at_s",
-        Kind::Number { min: -MOMENTS_S, max: MOMENTS_S },
-        "0.0",
-        "s",
-        "The moment that pictures show, and that an animation begins with: frame i shows this and i / `fps` seconds.",
-        "12.5",
+pub const TIME_ROWS: &[Row<Scene>] = &[
+    field!(
+        key(
+            "at",
+            Kind::Moment,
+            "none: all objects are there",
+            "",
+            "The moment of the calendar that pictures show: a year, a date or a date-time, of which the beginning counts. Objects are there from their first moment up to their last, which is not of it. See Time.",
+            "\"1890\"",
+        ),
+        Same,
+        |scene: Scene| scene.moment
     ),
-    Same,
-    |scene: Scene| scene.time_s
-)];
+    field!(
+        key(
+            "at_s",
+            Kind::Number { min: -MOMENTS_S, max: MOMENTS_S },
+            "0.0",
+            "s",
+            "The second of the scene's own clock that pictures show, and that an animation begins with: frame i shows this and i / `fps` seconds.",
+            "12.5",
+        ),
+        Same,
+        |scene: Scene| scene.time_s
+    ),
+];
 
 /// `[[trajectory]]`.
 pub const TRAJECTORY: Table = Table {

@@ -10,6 +10,7 @@ mod occlusion;
 mod portal;
 mod row;
 mod see_through;
+mod time;
 mod worldlet;
 
 pub use annotation::Annotation;
@@ -22,6 +23,7 @@ pub use occlusion::Occlusion;
 pub use portal::Portal;
 pub use row::{KindRow, OwnKind};
 pub use see_through::SeeThrough;
+pub use time::TimeLens;
 pub use worldlet::Worldlet;
 
 use crate::lens::{best_view::BestView, content::Content, deform::Deform, rendering::Rendering};
@@ -86,6 +88,8 @@ kinds! {
     Occlusion(Occlusion),
     /// Moves what is in it.
     Deformation(Deformation),
+    /// Shows another moment in it.
+    Time(TimeLens),
     /// Shows an image or a text.
     Annotation(Annotation),
     /// Shows the city from an eye of its own.

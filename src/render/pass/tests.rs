@@ -15,7 +15,7 @@ use crate::{
         frame::{Backend, FrameInput},
         furniture::{self, Furniture},
         moved::Moved,
-        operations::{LensTables, Operations},
+        operations::{LensTables, Operations, SceneTime},
         own_sprites::OwnSprites,
         pass::{Inputs, list},
         placed_region::{Leaf, PlacedRegion},
@@ -95,7 +95,8 @@ impl Asked {
         let present = [self.effect.is_some()];
         let city = CityModel::default();
         let tests = Default::default();
-        Operations::new(&[], &[lens], &present, tests, &[&city], &LensTables::default(), 1.0).expect("operations")
+        Operations::new(&[], &[lens], &present, tests, &[&city], &LensTables::default(), &SceneTime::default(), 1.0)
+            .expect("operations")
     }
 
     fn volumes(&self) -> Vec<LensVolume> {

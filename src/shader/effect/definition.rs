@@ -78,6 +78,8 @@ impl EffectDefinition {
     /// Its name as WGSL has it: what all its names begin with.
     pub fn wgsl_name(&self) -> String {
         let name = identifier(&self.name);
+        // Names of time operators are short, and some are words of WGSL.
+        let name = if self.kind == EffectKind::Epoch { format!("epoch_{name}") } else { name };
         // Whatever a user calls an effect, nothing of the program is called so.
         if self.is_users { format!("user_{name}") } else { name }
     }

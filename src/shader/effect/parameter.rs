@@ -1,5 +1,7 @@
 //! Parameters of effects: what they take, and what holds where they are not given.
 
+use crate::time::{Interval, Span, Unit};
+
 /// Types of parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParameterKind {
@@ -28,6 +30,14 @@ pub enum ParameterKind {
     Shares,
     /// Colours, as [`Self::Color`], at equal steps of a ramp, at most [`MAX_RAMP`]; in WGSL a `u32` for `color_on_ramp`.
     Colors,
+    /// A moment, as [`Interval`] reads it: its beginning; in WGSL a `Moment`. For epochs alone, as all that follow.
+    Moment,
+    /// A span of time, as [`Span`] reads it; in WGSL a `Duration`.
+    Span,
+    /// A unit that moments are rounded to, as [`Unit`] reads it; in WGSL a `Duration`.
+    Unit,
+    /// A time of day, `"14:30"`, less than 24 hours; in WGSL a `Duration` without months.
+    Clock,
 }
 
 /// Longest list a parameter takes.
@@ -43,6 +53,8 @@ impl ParameterKind {
             Self::Number { .. } => Some(("f32", 1)),
             Self::Word(_) | Self::Shares | Self::Colors => Some(("u32", 1)),
             Self::Color | Self::Vector => Some(("vec3f", 3)),
+            Self::Moment => Some(("Moment", 2)),
+            Self::Span | Self::Unit | Self::Clock => Some(("Duration", 3)),
             Self::Text | Self::Numbers | Self::Texts => None,
         }
     }
@@ -61,6 +73,32 @@ impl ParameterKind {
             Self::Texts => format!("1 to {MAX_LIST} texts"),
             Self::Shares => format!("1 to {MAX_RAMP} numbers of 0 to 1"),
             Self::Colors => format!("1 to {MAX_RAMP} colours \"#rrggbb\""),
+            Self::Moment => "a time: \"1890\", \"1890-05-03\" or \"1890-05-03T14:00\"".into(),
+            Self::Span => "a span of time: \"10 years\", \"-6 months\", \"1 h 30 min\" or \"P10Y\"".into(),
+            Self::Unit => "a unit of time: \"year\", \"10 years\", \"month\", \"day\" or \"15 min\"".into(),
+            Self::Clock => "a time of day: \"14:30\"".into(),
+        }
+    }
+
+    /// Whether it is of time, in whole words.
+    pub fn is_time(&self) -> bool {
+        matches!(self, Self::Moment | Self::Span | Self::Unit | Self::Clock)
+    }
+
+    /// A text as WGSL reads it where it is of time.
+    ///
+    /// # Errors
+    /// What would be right.
+    pub fn words_of_time(&self, text: &str) -> Result<Vec<u32>, String> {
+        match self {
+            Self::Moment => {
+                let moment = Interval::parse(text)?.begin;
+                moment.map(|moment| moment.words().to_vec()).ok_or_else(|| format!("\"{text}\" has no beginning"))
+            }
+            Self::Span => Span::parse(text).map(|span| span.words().to_vec()),
+            Self::Unit => Span::parse(text).and_then(Unit::of).map(|unit| unit.words().to_vec()),
+            Self::Clock => Span::of_clock(text).map(|span| span.words().to_vec()),
+            _ => Err(format!("must be {}", self.describe())),
         }
     }
 

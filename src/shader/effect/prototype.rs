@@ -7,8 +7,6 @@ use serde::{Deserialize, Deserializer, de::Error as _};
 /// handlers of one prototype run in lens order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum EffectKind {
-    /// Says which moment a lens shows.
-    Epoch,
     /// Says where the content of a lens is put.
     Transform,
     /// Moves places of the city: a step of a deformation.
@@ -17,6 +15,8 @@ pub enum EffectKind {
     Ray,
     /// Says how far a place is from a region: a shape of a lens.
     Region,
+    /// Says which moment shows in a lens, of the one that shows below it: a time operator.
+    Epoch,
     /// Takes parts of the city away, before anything is seen of them.
     Hide,
     /// Says how much of a surface stands between the eye and what is behind it; from 1, lens by lens.
@@ -113,6 +113,8 @@ pub enum AskedBy {
     Shapes,
     /// `transform` of a content.
     Contents,
+    /// The `op` of a step of `time`.
+    Times,
     /// The program alone; users have none of their own.
     Program,
 }
@@ -125,6 +127,7 @@ impl AskedBy {
             Self::Steps => "a step of deform",
             Self::Shapes => "shape",
             Self::Contents => "transform of a content",
+            Self::Times => "a step of time",
             Self::Program => "nothing",
         }
     }
@@ -139,21 +142,6 @@ const PARAMETERS: &str = "parameters";
 
 /// All prototypes, in the order of their execution.
 pub const PROTOTYPES: [Prototype; 13] = [
-    Prototype {
-        kind: EffectKind::Epoch,
-        word: "epoch",
-        name: "epoch",
-        stage: Stage::Lens,
-        default_mode: Mode::Optional,
-        subject: ("moment", "f32"),
-        context: None,
-        result: "f32",
-        is_style: false,
-        touches_lines: false,
-        asked_by: AskedBy::Program,
-        parameters: PARAMETERS,
-        when: "once for each lens: the moment that it shows, of the one that the scene shows; years",
-    },
     Prototype {
         kind: EffectKind::Transform,
         word: "transform",
@@ -213,6 +201,21 @@ pub const PROTOTYPES: [Prototype; 13] = [
         asked_by: AskedBy::Shapes,
         parameters: "planes",
         when: "for every place that is asked: how far it is from the border, metres, negative inside; never more than it is",
+    },
+    Prototype {
+        kind: EffectKind::Epoch,
+        word: "epoch",
+        name: "epoch",
+        stage: Stage::Place,
+        default_mode: Mode::Local,
+        subject: ("moment", "Moment"),
+        context: None,
+        result: "Moment",
+        is_style: false,
+        touches_lines: false,
+        asked_by: AskedBy::Times,
+        parameters: "object_values",
+        when: "for every place in the lens: the moment that shows there, of the one that shows below",
     },
     Prototype {
         kind: EffectKind::Hide,
@@ -377,7 +380,7 @@ impl Prototype {
 impl EffectKind {
     /// All, in the order of their execution.
     pub const ALL: [Self; PROTOTYPES.len()] = {
-        let mut all = [Self::Epoch; PROTOTYPES.len()];
+        let mut all = [Self::Transform; PROTOTYPES.len()];
         let mut i = 0;
         while i < all.len() {
             all[i] = PROTOTYPES[i].kind;

@@ -56,7 +56,6 @@ const FILES: &[(&str, &str)] = &[
     built_in!("lighting"),
     built_in!("lambert"),
     built_in!("haze"),
-    built_in!("present"),
     built_in!("own-ray"),
     built_in!("translate"),
     built_in!("scale"),
@@ -65,6 +64,12 @@ const FILES: &[(&str, &str)] = &[
     built_in!("twist"),
     built_in!("bend"),
     built_in!("open-street"),
+    built_in!("set"),
+    built_in!("shift"),
+    built_in!("ceil"),
+    built_in!("floor"),
+    built_in!("time-of-day"),
+    built_in!("loop"),
 ];
 
 /// How many handlers the 13 bits of an invoker can tell apart.
@@ -99,14 +104,21 @@ pub fn named() -> impl Iterator<Item = &'static EffectDefinition> {
     handlers().iter().filter(move |h| h.is_users || is_effect(h))
 }
 
-/// A user's handler called `name` that is asked for in another place than a list of effects.
+/// A handler called `name` that is asked for in another place than a list of effects.
 pub fn find_asked_by(asked_by: AskedBy, name: &str) -> Option<&'static EffectDefinition> {
     asked_for(asked_by).find(|h| h.name == name)
 }
 
-/// Users' handlers that are asked for there.
+/// The number by which shaders know a handler that is asked for there.
+pub fn number_asked_by(asked_by: AskedBy, name: &str) -> Option<u32> {
+    let is_it = |h: &EffectDefinition| h.kind.prototype().asked_by == asked_by && h.name == name;
+    handlers().iter().position(is_it).map(|number| number as u32)
+}
+
+/// Handlers that are asked for there by name: users', and the program's where they are files alone.
 pub fn asked_for(asked_by: AskedBy) -> impl Iterator<Item = &'static EffectDefinition> {
-    handlers().iter().filter(move |h| h.is_users && h.kind.prototype().asked_by == asked_by)
+    let is_named = move |h: &&EffectDefinition| h.is_users || asked_by == AskedBy::Times;
+    handlers().iter().filter(move |h| h.kind.prototype().asked_by == asked_by).filter(is_named)
 }
 
 /// The number of the handler called `name`, whatever its prototype.

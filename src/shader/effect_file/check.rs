@@ -17,6 +17,7 @@ use crate::shader::{
         redefined::check_types,
     },
     host::HostProgram,
+    library::MOMENT,
     module::Module,
     plan::{
         Plan,
@@ -88,7 +89,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         let at = error.spans().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
         file.error(place(at), own(at, in_words(error.as_inner())))
     })?;
-    if matches!(row.asked_by, AskedBy::Steps | AskedBy::Shapes | AskedBy::Contents) {
+    if matches!(row.asked_by, AskedBy::Steps | AskedBy::Shapes | AskedBy::Contents | AskedBy::Times) {
         let program = HostProgram::new(&effect).map_err(|unknown| {
             let at = unknown.at.map(|range| begin + range.start.saturating_sub(effect.parameters_end));
             file.error(place(at), unknown.message)
@@ -113,6 +114,7 @@ pub(super) fn module_of(effect: &EffectDefinition) -> String {
             Module::Refine(DeformPlan(vec![deformer]))
         }
         EffectKind::Region | EffectKind::Transform => return called_alone(effect),
+        EffectKind::Epoch => return chained_alone(effect),
         _ => Module::Shade(Program::Specialised(plan)),
     };
     module.source_with(handlers)
@@ -128,6 +130,18 @@ fn called_alone(effect: &EffectDefinition) -> String {
         effect.slots().max(1),
         effect.source,
         row.result,
+        effect.wgsl_name(),
+    )
+}
+
+/// A time operator with a caller, and nothing else.
+fn chained_alone(effect: &EffectDefinition) -> String {
+    let parameters = if effect.slots() > 0 { format!(", {}(0u)", effect.own("parameters")) } else { String::new() };
+    format!(
+        "{}var<private> object_values: array<u32, {}>;\n\n{}\nfn call(moment: Moment) -> Moment {{\n    return {}(moment{parameters});\n}}\n",
+        MOMENT.paragraph(),
+        effect.floats().max(1),
+        effect.source,
         effect.wgsl_name(),
     )
 }

@@ -15,6 +15,8 @@ pub const MOST_REACH: u32 = 64;
 pub const MOST_LINE_WIDTH: f64 = 64.0;
 /// Keys of a use of an effect that are no parameters.
 pub const RESERVED: &[&str] = &["effect", "class", "blend", "weight"];
+/// Keys of a step of `time` that are no parameters.
+pub const RESERVED_OF_TIME: &[&str] = &["op"];
 
 /// The header of a file.
 #[derive(Deserialize)]
@@ -68,6 +70,10 @@ enum TypeName {
     Texts,
     Shares,
     Colors,
+    Moment,
+    Span,
+    Unit,
+    Clock,
 }
 
 /// Parameters that more than one effect has.
@@ -104,6 +110,10 @@ impl ParameterHeader {
             (TypeName::Texts, None) => ParameterKind::Texts,
             (TypeName::Shares, None) => ParameterKind::Shares,
             (TypeName::Colors, None) => ParameterKind::Colors,
+            (TypeName::Moment, None) => ParameterKind::Moment,
+            (TypeName::Span, None) => ParameterKind::Span,
+            (TypeName::Unit, None) => ParameterKind::Unit,
+            (TypeName::Clock, None) => ParameterKind::Clock,
             (TypeName::Number, None) => match self.range.map(Spanned::into_inner) {
                 None => ParameterKind::Number { min: f64::MIN, max: f64::MAX },
                 Some([min, max]) if min < max => ParameterKind::Number { min, max },
@@ -134,6 +144,7 @@ fn takes(kind: &ParameterKind, value: &DefaultValue) -> bool {
         (ParameterKind::Word(words), DefaultValue::Text(text)) => words.contains(text),
         (ParameterKind::Color, DefaultValue::Text(text)) => is_color(text),
         (ParameterKind::Vector, DefaultValue::Numbers(list)) => list.len() == 3,
+        (kind, DefaultValue::Text(text)) if kind.is_time() => kind.words_of_time(text).is_ok(),
         (ParameterKind::Colors, DefaultValue::Texts(list)) => is_ramp(list.len()) && list.iter().all(|t| is_color(t)),
         (ParameterKind::Shares, DefaultValue::Numbers(list)) => {
             is_ramp(list.len()) && list.iter().all(|n| (0.0..=1.0).contains(n))
@@ -161,6 +172,7 @@ pub(super) fn is_effect_name(name: &str) -> bool {
 pub(super) fn is_parameter_name(name: &str) -> bool {
     name.len() <= 40
         && !RESERVED.contains(&name)
+        && !RESERVED_OF_TIME.contains(&name)
         && name.starts_with(|c: char| c.is_ascii_lowercase())
         && name.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
 }

@@ -34,7 +34,7 @@ pub(super) mod redefined;
 
 pub use check::checked;
 pub use error::FileError;
-pub use header::{MOST_LINE_WIDTH, MOST_REACH, RESERVED};
+pub use header::{MOST_LINE_WIDTH, MOST_REACH, RESERVED, RESERVED_OF_TIME};
 pub use redefined::redefined;
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::shader::{
     effect::{
         definition::EffectDefinition,
         parameter::{ParameterDefinition, ParameterKind},
+        prototype::EffectKind,
     },
     wgsl::token::identifier,
 };
@@ -39,13 +40,25 @@ pub(super) fn parameters_source(effect: &EffectDefinition) -> String {
         text.push_str(&format!("const {} = {number}u;\n", effect.own(&name)));
     }
     text.push_str(&format!("fn {}(first: u32) -> {type_name} {{\n", effect.own("parameters")));
-    for slot in 0..effect.slots() {
-        text.push_str(&format!("    let s{slot} = {}[first + {slot}u];\n", effect.kind.prototype().parameters));
+    let array = effect.kind.prototype().parameters;
+    let has_words = effect.kind == EffectKind::Epoch;
+    if !has_words {
+        for slot in 0..effect.slots() {
+            text.push_str(&format!("    let s{slot} = {array}[first + {slot}u];\n"));
+        }
     }
-    let mut next = 0;
-    let mut float = || {
-        next += 1;
-        format!("s{}.{}", (next - 1) / 4, ["x", "y", "z", "w"][(next - 1) % 4])
+    let next = std::cell::Cell::new(0);
+    let word = || {
+        next.set(next.get() + 1);
+        format!("{array}[first + {}u]", next.get() - 1)
+    };
+    let int = || format!("bitcast<i32>({})", word());
+    let float = || {
+        if has_words {
+            return format!("bitcast<f32>({})", word());
+        }
+        next.set(next.get() + 1);
+        format!("s{}.{}", (next.get() - 1) / 4, ["x", "y", "z", "w"][(next.get() - 1) % 4])
     };
     let values: Vec<String> = fields
         .iter()
@@ -53,6 +66,8 @@ pub(super) fn parameters_source(effect: &EffectDefinition) -> String {
             "bool" => format!("{} != 0.0", float()),
             "u32" => format!("u32({})", float()),
             "vec3f" => format!("vec3f({}, {}, {})", float(), float(), float()),
+            "Moment" => format!("Moment({}, {})", int(), word()),
+            "Duration" => format!("Duration({}, {}, {})", int(), int(), word()),
             _ => float(),
         })
         .collect();

@@ -86,12 +86,17 @@ fn of_header(file: &File, is_users: bool) -> Result<EffectDefinition, FileError>
     for parameter in header.parameters {
         let (span, name) = (parameter.name.span(), parameter.name.get_ref().clone());
         if !is_parameter_name(&name) || effect.parameters.iter().any(|p| p.name == name) {
-            let message = "expected a new name of a-z, 0-9 and _, a letter first; not effect, class, blend or weight";
+            let message =
+                "expected a new name of a-z, 0-9 and _, a letter first; not effect, class, blend, weight or op";
             return Err(file.error(at(span), message));
         }
-        effect
-            .parameters
-            .push(parameter.definition().map_err(|(place, message)| file.error(place.map_or(at(span), &at), message))?);
+        let place = at(span);
+        let parameter = parameter.definition().map_err(|(own, message)| file.error(own.map_or(place, &at), message))?;
+        if parameter.kind.is_time() && effect.kind != EffectKind::Epoch {
+            let message = "types moment, span, unit and clock are for kind = \"epoch\"";
+            return Err(file.error(place, message));
+        }
+        effect.parameters.push(parameter);
     }
     for (key, amount) in amounts {
         let Some(amount) = amount else { continue };

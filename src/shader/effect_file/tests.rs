@@ -37,11 +37,11 @@ fn what_is_wrong_is_named_with_its_place() {
         ),
         (
             HEADER.replace("post", "past"),
-            "my.wgsl:2:12: unknown variant `past`, expected one of `epoch`, `transform`, `deform`, `ray`, `region`, `hide`, `opacity`, `material`, `light`, `scene`, `air`, `post`, `filter`",
+            "my.wgsl:2:12: unknown variant `past`, expected one of `transform`, `deform`, `ray`, `region`, `epoch`, `hide`, `opacity`, `material`, `light`, `scene`, `air`, `post`, `filter`",
         ),
         (
             format!("{}{good}", HEADER.replace("post", "air")),
-            "my.wgsl:1:1: mode (but of deformations), derivative, and kind = \"epoch\", kind = \"ray\", kind = \"air\", are for handlers of the program; expected kind = transform, deform, region, hide, opacity, material, light, \
+            "my.wgsl:1:1: mode (but of deformations), derivative, and kind = \"ray\", kind = \"air\", are for handlers of the program; expected kind = transform, deform, region, epoch, hide, opacity, material, light, \
              scene, post or filter",
         ),
         (HEADER.replace("spec", "spek"), "my.wgsl:3:5: unknown field `spek`"),

@@ -13,7 +13,10 @@ use std::ops::Range;
 use glam::{DMat3, DVec3};
 use wgpu::naga::{Function, Handle, Module, front::wgsl};
 
-use crate::shader::effect::definition::EffectDefinition;
+use crate::shader::{
+    effect::{definition::EffectDefinition, prototype::EffectKind},
+    library::MOMENT,
+};
 
 pub use value::{Dual, Scalar, Value};
 
@@ -49,7 +52,12 @@ impl HostProgram {
     pub fn new(effect: &EffectDefinition) -> Result<Self, Unknown> {
         let array = effect.kind.prototype().parameters;
         // What reads the parameters is not called here.
-        let head = format!("var<private> {array}: array<vec4f, {}>;\n", effect.slots().max(1));
+        let head = match effect.kind {
+            EffectKind::Epoch => {
+                format!("{}var<private> {array}: array<u32, {}>;\n", MOMENT.paragraph(), effect.floats().max(1))
+            }
+            _ => format!("var<private> {array}: array<vec4f, {}>;\n", effect.slots().max(1)),
+        };
         let text = head.clone() + &effect.source;
         let unknown = |at: Option<Range<usize>>, message: String| {
             let own = |at: Range<usize>| at.start.saturating_sub(head.len())..at.end.saturating_sub(head.len());
@@ -95,6 +103,24 @@ impl HostProgram {
         }
     }
 
+    /// The moment that a time operator makes of another, in its parameters' words; both as hours and microseconds of the hour.
+    pub fn moment(&self, moment: [u32; 2], words: &[u32]) -> Option<[u32; 2]> {
+        let mut arguments = vec![in_words("Moment", &mut moment.into_iter())];
+        if !self.parameters.is_empty() {
+            let mut words = words.iter().copied();
+            arguments.push(Value::Many(self.parameters.iter().map(|name| in_words(name, &mut words)).collect()));
+        }
+        match run::call(&self.module, &self.module.functions[self.main], arguments)? {
+            Value::Many(members) => match members[..] {
+                [Value::Scalar(Scalar::Int(hour)), Value::Scalar(Scalar::Uint(micro))] => {
+                    Some([hour.cast_unsigned(), micro])
+                }
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
     /// What a step of the program makes of a place: it takes no size.
     #[cfg(test)]
     fn step(&self, place: DVec3, parameters: &[f32]) -> Option<Value> {
@@ -112,6 +138,21 @@ impl HostProgram {
             _ => Value::Scalar(Scalar::Real(Dual::constant(next()))),
         };
         Value::Many(self.parameters.iter().map(of).collect())
+    }
+}
+
+/// A parameter of a time operator, of words.
+fn in_words(type_name: &str, words: &mut impl Iterator<Item = u32>) -> Value {
+    let mut next = || words.next().unwrap_or(0);
+    let int = |word: u32| Value::Scalar(Scalar::Int(word.cast_signed()));
+    let real = |word: u32| Dual::constant(f32::from_bits(word).into());
+    match type_name {
+        "Moment" => Value::Many(vec![int(next()), Value::Scalar(Scalar::Uint(next()))]),
+        "Duration" => Value::Many(vec![int(next()), int(next()), Value::Scalar(Scalar::Uint(next()))]),
+        "bool" => Value::Scalar(Scalar::Bool(f32::from_bits(next()) != 0.0)),
+        "u32" => Value::Scalar(Scalar::Uint(f32::from_bits(next()) as u32)),
+        "vec3f" => Value::vector([next(), next(), next()].map(real)),
+        _ => Value::Scalar(Scalar::Real(real(next()))),
     }
 }
 

@@ -4,6 +4,7 @@
 //! moves or a slider that is dragged compiles nothing. Equal plans share a pipeline.
 
 pub(super) mod content;
+pub(super) mod epoch;
 pub(super) mod form;
 pub(super) mod lens;
 pub(super) mod lens_test;
@@ -17,6 +18,7 @@ use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     plan::{
         content::PlanContent,
+        epoch::PlanEpoch,
         form::Form,
         lens::{BODY_SLOTS, BodyKind, PlanBorder, PlanLens},
         lens_test::LensTest,
@@ -44,6 +46,10 @@ pub struct Plan {
     pub clear_materials: bool,
     /// The contents of its lenses, bottom lens first.
     pub contents: Vec<PlanContent>,
+    /// Whether objects come and go: each place shows a moment.
+    pub timed: bool,
+    /// The time operators of its lenses, bottom lens first.
+    pub epochs: Vec<PlanEpoch>,
     /// How places are told apart, for the techniques that are kept for reference; `None`: by accumulation.
     pub regions: Option<Regions>,
 }
@@ -78,8 +84,9 @@ impl Plan {
     /// The soft border of one of its lenses that does something here.
     pub fn border_of(&self, lens: u32) -> Option<PlanBorder> {
         let acts = |s: &Step| matches!(s.scope, Scope::Lens(l, _) if l == lens);
-        // Contents fade by dithering alone.
-        let shows = |b: &PlanBorder| b.dithers && self.contents.iter().any(|c| c.lens == lens);
+        // Contents and moments fade by dithering alone.
+        let has_moment = || self.epochs.iter().any(|e| e.lens == lens);
+        let shows = |b: &PlanBorder| b.dithers && (self.contents.iter().any(|c| c.lens == lens) || has_moment());
         self.lenses[lens as usize].border.filter(|b| shows(b) || self.steps.iter().any(acts))
     }
 
@@ -142,17 +149,18 @@ impl Plan {
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let decides = |step: &&Step| handlers[step.effect as usize].kind.decides_visibility();
         let steps: Vec<Step> = self.steps.iter().filter(decides).cloned().collect();
-        if steps.is_empty() && self.contents.is_empty() && !self.clear_materials {
+        if steps.is_empty() && self.contents.is_empty() && !self.clear_materials && !self.timed {
             return None;
         }
-        let (mut lenses, contents) = (self.plain_lenses(), self.contents.clone());
+        let (mut lenses, contents, epochs) = (self.plain_lenses(), self.contents.clone(), self.epochs.clone());
         // A lens that fades is translucent in all of its border.
         let fades = |lens: u32| {
             let mut rules = self.steps_of(EffectKind::Opacity, handlers);
             rules.any(|(step, _)| matches!(step.scope, Scope::Lens(l, _) if l == lens))
         };
         (0..).zip(&mut lenses).for_each(|(i, lens)| lens.border = lens.border.filter(|b| b.dithers || fades(i)));
-        Some(Self { lenses, steps, contents, clear_materials: self.clear_materials, ..Self::default() })
+        let (clear_materials, timed) = (self.clear_materials, self.timed);
+        Some(Self { lenses, steps, contents, epochs, clear_materials, timed, ..Self::default() })
     }
 
     /// The part that lines go through; `None` where no effect draws lines.
@@ -163,6 +171,8 @@ impl Plan {
             steps,
             lines: true,
             contents: self.contents.clone(),
+            timed: self.timed,
+            epochs: self.epochs.clone(),
             ..Self::default()
         })
     }
@@ -179,6 +189,8 @@ impl Plan {
         self.clear_materials = false;
         self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
         self.contents.clear();
+        self.epochs.clear();
+        self.timed = false;
         self
     }
 

@@ -45,6 +45,10 @@ impl Program {
             Self::Specialised(plan) => !plan.contents.is_empty(),
             Self::Uber(uber) => uber.contents,
         };
+        let timed = match self {
+            Self::Specialised(plan) => plan.timed,
+            Self::Uber(uber) => uber.timed,
+        };
         let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
@@ -70,6 +74,7 @@ impl Program {
             lines,
             transparency,
             contents,
+            timed,
             borders,
             by_ray,
         }
@@ -96,6 +101,19 @@ impl Program {
                 all
             }
             Self::Uber(uber) => uber.leaves.clone(),
+        }
+    }
+
+    /// The numbers of all time operators its text has, ascending, each once.
+    pub fn epochs(&self) -> Vec<u32> {
+        match self {
+            Self::Specialised(plan) => {
+                let mut all: Vec<u32> = plan.epochs.iter().map(|epoch| epoch.handler).collect();
+                all.sort_unstable();
+                all.dedup();
+                all
+            }
+            Self::Uber(uber) => uber.epochs.clone(),
         }
     }
 
@@ -153,6 +171,8 @@ pub struct Parts {
     pub transparency: bool,
     /// Contents of lenses.
     pub contents: bool,
+    /// Moments, and when objects are there.
+    pub timed: bool,
     /// Soft borders of lenses.
     pub borders: bool,
     /// Borders of lenses along rays.

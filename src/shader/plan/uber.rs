@@ -38,17 +38,23 @@ pub struct Uber {
     pub clear_materials: bool,
     /// Whether some lenses have own content.
     pub contents: bool,
+    /// Whether objects come and go.
+    pub timed: bool,
+    /// The time operators of the scene's lenses, ascending, each once.
+    pub epochs: Vec<u32>,
 }
 
 impl Uber {
     /// The part that decides which fragments are there; `None` where nothing may be hidden.
     pub fn hiding(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::decides_visibility);
-        (!effects.is_empty() || self.contents || self.clear_materials).then(|| Self {
+        (!effects.is_empty() || self.contents || self.clear_materials || self.timed).then(|| Self {
             effects,
             tests: self.tests.clone(),
             leaves: self.leaves.clone(),
             contents: self.contents,
+            timed: self.timed,
+            epochs: self.epochs.clone(),
             sides: self.sides,
             borders: self.dithers || (self.borders && self.is_seen_through(handlers)),
             by_ray: self.by_ray,
@@ -66,24 +72,38 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        let Self { sides, borders, by_ray, dithers, contents, .. } = *self;
-        let all = Self { effects, tests, leaves, sides, borders, by_ray, dithers, contents, ..Self::default() };
-        self.lines.then_some(Self { blends: self.blends, lines: true, ..all })
+        let Self { sides, borders, by_ray, dithers, contents, timed, blends, .. } = *self;
+        let epochs = self.epochs.clone();
+        let all = Self {
+            effects,
+            tests,
+            leaves,
+            sides,
+            borders,
+            by_ray,
+            dithers,
+            contents,
+            timed,
+            epochs,
+            ..Self::default()
+        };
+        self.lines.then_some(Self { blends, lines: true, ..all })
     }
 
     /// The part that decides how surfaces look.
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
         let transparency = self.is_seen_through(handlers);
         let effects = self.of(handlers, |kind| !kind.decides_visibility());
-        Self { effects, transparency, contents: false, clear_materials: false, ..self }
+        let untimed = Self { timed: false, epochs: Vec::new(), ..self };
+        Self { effects, transparency, contents: false, clear_materials: false, ..untimed }
     }
 
     /// The part that decides how much of each translucent layer is seen, and how that looks; `None` where nothing is seen
     /// through.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
-        let all =
-            Self { effects, bodies: Vec::new(), lines: false, transparency: false, contents: false, ..self.clone() };
+        let untimed = Self { timed: false, epochs: Vec::new(), contents: false, ..self.clone() };
+        let all = Self { effects, bodies: Vec::new(), lines: false, transparency: false, ..untimed };
         self.is_seen_through(handlers).then_some(all)
     }
 

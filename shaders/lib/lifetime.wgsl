@@ -1,0 +1,35 @@
+// When objects are there, in what effects read of objects: the moment of the scene, where lifetimes begin, the first and the last moment
+// that any lens shows; then what time operators read; then the lifetimes, that of no object first.
+
+const LIFETIMES: u32 = 2u;
+const EARLIEST: u32 = 4u;
+const LATEST: u32 = 6u;
+
+fn moment_in(first: u32) -> Moment {
+    return Moment(bitcast<i32>(object_values[first]), object_values[first + 1u]);
+}
+
+// The moment of the scene.
+fn scene_moment() -> Moment {
+    return moment_in(0u);
+}
+
+// From its first moment up to its last, which is not of it.
+struct Lifetime {
+    begin: Moment,
+    end: Moment,
+}
+
+fn lifetime_of(object: u32) -> Lifetime {
+    let first = object_values[LIFETIMES] + 4u * (object + 1u);
+    return Lifetime(moment_in(first), moment_in(first + 2u));
+}
+
+fn holds(lifetime: Lifetime, at: Moment) -> bool {
+    return at.hour == TIMELESS_HOUR || (!is_before(at, lifetime.begin) && is_before(at, lifetime.end));
+}
+
+// Whether it is there at all moments that may be shown.
+fn is_always(lifetime: Lifetime) -> bool {
+    return !is_before(moment_in(EARLIEST), lifetime.begin) && is_before(moment_in(LATEST), lifetime.end);
+}

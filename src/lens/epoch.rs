@@ -1,0 +1,317 @@
+//! Time operators of lenses on the host: which moment shows in a lens (Tiesel §4.2).
+//!
+//! The operators of a lens act one after the other on the moment that shows below it; lenses act bottom to top. No moment at all, as in a
+//! scene that gives none, stays none until something sets one.
+
+use std::sync::Arc;
+
+use crate::{
+    lens::{effect_use::Parameter, handled::Handled},
+    shader::{
+        effect::{AskedBy, DefaultValue, EffectDefinition, Fallback, ParameterDefinition, number_asked_by},
+        host::HostProgram,
+    },
+    time::{Interval, Moment, Span, Unit},
+};
+
+/// A time operator, ready to act.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Operator {
+    /// Index into [`crate::shader::handlers`].
+    pub handler: u32,
+    /// Its parameters as shaders read them.
+    pub words: Vec<u32>,
+    exact: Exact,
+}
+
+/// What it does, in the calendar of [`crate::time`].
+#[derive(Clone, Debug, PartialEq)]
+enum Exact {
+    Set(Moment),
+    Shift(Span),
+    Ceil(Unit, Span),
+    Floor(Unit, Span),
+    TimeOfDay(i64),
+    Own(Arc<HostProgram>),
+}
+
+impl Operator {
+    /// The operator that a step asks for, at a second of the scene.
+    ///
+    /// # Errors
+    /// There is none of its name, or a parameter does not fit: what would be right.
+    pub fn new(step: &Handled, clock_s: f64) -> Result<Self, String> {
+        let definition = step.definition(AskedBy::Times)?;
+        if definition.host.is_none() && definition.name == LOOP {
+            return Loop::new(step, definition).map(|own| Self::set(own.at(clock_s)));
+        }
+        let number = number_asked_by(AskedBy::Times, &definition.name);
+        let words: Result<Vec<Vec<u32>>, String> =
+            definition.shader_parameters().map(|(parameter, ..)| words_of(step, parameter)).collect();
+        let exact = match &definition.host {
+            Some(own) => Exact::Own(own.clone()),
+            None => Exact::of(step, definition)?,
+        };
+        Ok(Self { handler: number.unwrap_or_default(), words: words?.concat(), exact })
+    }
+
+    /// The one that sets a moment.
+    fn set(moment: Moment) -> Self {
+        let handler = number_asked_by(AskedBy::Times, SET).unwrap_or_default();
+        Self { handler, words: moment.words().to_vec(), exact: Exact::Set(moment) }
+    }
+
+    /// The moment that it makes of another.
+    pub fn apply(&self, at: Option<Moment>) -> Option<Moment> {
+        match &self.exact {
+            Exact::Set(moment) => Some(*moment),
+            Exact::Own(program) => {
+                let moment = at.map_or(TIMELESS, Moment::words);
+                sound(program.moment(moment, &self.words).unwrap_or(moment))
+            }
+            Exact::Shift(by) => at.map(|at| at.shifted(*by)),
+            Exact::Ceil(unit, by) => at.map(|at| at.shifted(*by).ceiled(*unit)),
+            Exact::Floor(unit, by) => at.map(|at| at.shifted(*by).floored(*unit)),
+            Exact::TimeOfDay(micros) => at.map(|at| at.at_time_of_day(*micros)),
+        }
+    }
+
+    /// The first and the last moment that it may make of moments from one to another; `None`: of none it makes none.
+    pub fn range(&self, of: Option<[Moment; 2]>) -> Option<[Moment; 2]> {
+        match &self.exact {
+            Exact::Set(moment) => Some([*moment; 2]),
+            // Of what users do nothing is known.
+            Exact::Own(_) => Some([Moment::FIRST, Moment::LAST]),
+            // None of the others puts an earlier moment behind a later one.
+            _ => {
+                let [first, last] = of?;
+                self.apply(Some(first)).zip(self.apply(Some(last))).map(|(first, last)| [first, last])
+            }
+        }
+    }
+
+    /// Whether it makes the same moment of all.
+    pub fn is_absolute(&self) -> bool {
+        matches!(self.exact, Exact::Set(_))
+    }
+}
+
+const SET: &str = "set";
+const LOOP: &str = "loop";
+
+/// A moment that comes again and again: `from + (clock − start) · rate mod (until − from)`.
+struct Loop {
+    from: Moment,
+    /// Microseconds, > 0.
+    long: i64,
+    /// Microseconds that go by in a second, > 0.
+    per_second: i64,
+    /// Microseconds of the scene's clock.
+    start: i64,
+}
+
+impl Loop {
+    fn new(step: &Handled, definition: &EffectDefinition) -> Result<Self, String> {
+        let parameter = |name: &str| definition.parameters.iter().find(|p| p.name == name);
+        let text = |name: &str| {
+            parameter(name).and_then(|parameter| text_of(step, parameter)).ok_or_else(|| format!("{name} is missing"))
+        };
+        let moment = |name: &str| {
+            let text = text(name)?;
+            Interval::parse(&text)?.begin.ok_or_else(|| format!("\"{text}\" has no beginning"))
+        };
+        let (from, until) = (moment("begin")?, moment("end")?);
+        let per_second = Span::parse(&text("per_second")?)?.mean_micros();
+        if until <= from {
+            return Err(format!("end must be later than begin = {}, is {}", from.written(), until.written()));
+        }
+        if per_second <= 0 {
+            return Err("per_second must be more than none".to_owned());
+        }
+        let start_s = match step.parameters.get("start_s") {
+            Some(Parameter::Number(start)) => *start,
+            _ => 0.0,
+        };
+        Ok(Self { from, long: until - from, per_second, start: micros_of(start_s) })
+    }
+
+    fn at(&self, clock_s: f64) -> Moment {
+        let gone = i128::from(micros_of(clock_s)) - i128::from(self.start);
+        let since = (gone * i128::from(self.per_second)).div_euclid(1_000_000).rem_euclid(self.long.into());
+        self.from.shifted(Span::of_micros(since as i64))
+    }
+}
+
+/// Seconds of a scene's clock as whole microseconds.
+fn micros_of(seconds: f64) -> i64 {
+    (seconds * 1e6).round() as i64
+}
+
+/// What is wrong with the steps of a lens, each with its place, its key and what would be right.
+pub fn problems(steps: &[Handled]) -> Vec<(usize, String)> {
+    let wrong = |(i, step): (usize, &Handled)| Operator::new(step, 0.0).err().map(|message| (i, message));
+    steps.iter().enumerate().filter_map(wrong).collect()
+}
+
+/// No moment, as shaders have it.
+pub const TIMELESS: [u32; 2] = [(-i32::MAX).cast_unsigned(), 0];
+
+/// What shaders make of two words (`lib/moment.wgsl`).
+fn sound([hour, micro]: [u32; 2]) -> Option<Moment> {
+    const MOST_MICROS: u32 = 3_599_999_999;
+    if hour == TIMELESS[0] {
+        return None;
+    }
+    let clamped = Moment::of_words([hour, micro.min(MOST_MICROS)]);
+    Some(clamped.unwrap_or(if hour.cast_signed() < 0 { Moment::FIRST } else { Moment::LAST }))
+}
+
+impl Exact {
+    /// What an operator of the program does.
+    fn of(step: &Handled, definition: &EffectDefinition) -> Result<Self, String> {
+        let text = |name: &str| {
+            let parameter = definition.parameters.iter().find(|p| p.name == name);
+            parameter.and_then(|parameter| text_of(step, parameter)).ok_or_else(|| format!("{name} is missing"))
+        };
+        let span = |name: &str| text(name).and_then(|text| Span::parse(&text));
+        let unit = || span("unit").and_then(Unit::of);
+        Ok(match definition.name.as_str() {
+            SET => {
+                let at = text("at")?;
+                Self::Set(Interval::parse(&at)?.begin.ok_or_else(|| format!("\"{at}\" has no beginning"))?)
+            }
+            "shift" => Self::Shift(span("by")?),
+            "ceil" => Self::Ceil(unit()?, span("by")?),
+            "floor" => Self::Floor(unit()?, span("by")?),
+            "time-of-day" => Self::TimeOfDay(Span::of_clock(&text("time")?)?.micros()),
+            other => return Err(format!("\"{other}\" does not run on the host")),
+        })
+    }
+}
+
+/// The text of a parameter: as given, or its default.
+fn text_of(step: &Handled, parameter: &ParameterDefinition) -> Option<String> {
+    match (step.parameters.get(&parameter.name), &parameter.fallback) {
+        (Some(Parameter::Text(text)), _) => Some(text.clone()),
+        (None, Fallback::Value(DefaultValue::Text(text))) => Some(text.clone()),
+        _ => None,
+    }
+}
+
+/// A parameter as shaders read it.
+fn words_of(step: &Handled, parameter: &ParameterDefinition) -> Result<Vec<u32>, String> {
+    if !parameter.kind.is_time() {
+        return Ok(step.floats_of(parameter).into_iter().map(f32::to_bits).collect());
+    }
+    let text = text_of(step, parameter).ok_or_else(|| format!("{} is missing", parameter.name))?;
+    parameter.kind.words_of_time(&text)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::{
+        shader::effect::asked_for,
+        time::{DAY, HOUR, MINUTE, SECOND},
+    };
+
+    fn moments() -> impl Strategy<Value = Moment> {
+        let any = Moment::FIRST.micros()..=Moment::LAST.micros();
+        let near = |at: Moment| (-400 * DAY..=400 * DAY).prop_map(move |by| at.shifted(Span::of_micros(by)));
+        let micros = prop_oneof![
+            4 => any.clone(),
+            2 => any.clone().prop_map(|micros| micros - micros.rem_euclid(HOUR)),
+            2 => any.prop_map(|micros| micros - micros.rem_euclid(DAY)),
+            2 => -40 * DAY..=40 * DAY,
+        ];
+        let micros = micros.prop_map(|micros| Moment::from_micros(micros).unwrap_or(Moment::FIRST));
+        prop_oneof![10 => micros, 1 => near(Moment::FIRST), 1 => near(Moment::LAST)]
+    }
+
+    fn spans() -> impl Strategy<Value = String> {
+        let amount = prop_oneof![Just(0_i64), 1..=9i64, 1..=4000i64];
+        let unit = prop::sample::select(&["year", "month", "week", "day", "hour", "min", "s", "ms", "us"][..]);
+        (any::<bool>(), prop::collection::vec((amount, unit), 1..4)).prop_map(|(is_back, parts)| {
+            let sign = if is_back { "-" } else { "" };
+            let parts: Vec<String> = parts.into_iter().map(|(amount, unit)| format!("{amount} {unit}")).collect();
+            format!("{sign}{}", parts.join(" "))
+        })
+    }
+
+    fn units() -> impl Strategy<Value = String> {
+        let months = (1..=1500i32).prop_map(|months| Span::of_months(months).to_string());
+        let odd = (1..=400 * DAY).prop_map(|micros| Span::of_micros(micros).to_string());
+        let even = prop::sample::select(&[1, SECOND, MINUTE, 90 * MINUTE, HOUR, 7 * HOUR, DAY, 7 * DAY, 3 * DAY][..]);
+        prop_oneof![months, odd, even.prop_map(|micros| Span::of_micros(micros).to_string())]
+    }
+
+    fn steps() -> impl Strategy<Value = Handled> {
+        let of = |op: &str, parameters: Vec<(&str, String)>| Handled {
+            handler: op.to_owned(),
+            parameters: parameters
+                .into_iter()
+                .map(|(k, text)| (k.to_owned(), Parameter::Text(text)))
+                .collect::<BTreeMap<_, _>>(),
+        };
+        prop_oneof![
+            moments().prop_map(move |at| of("set", vec![("at", at.written())])),
+            spans().prop_map(move |by| of("shift", vec![("by", by)])),
+            (units(), spans()).prop_map(move |(unit, by)| of("ceil", vec![("unit", unit), ("by", by)])),
+            (units(), spans()).prop_map(move |(unit, by)| of("floor", vec![("unit", unit), ("by", by)])),
+            (0..DAY).prop_map(move |time| {
+                let at = Moment::from_micros(time).expect("a moment").clock(crate::time::Granularity::Micro);
+                of("time-of-day", vec![("time", at)])
+            }),
+        ]
+    }
+
+    proptest! {
+        #![proptest_config(crate::seeds::config())]
+
+        /// Shaders count in other numbers, and come to the same moments.
+        #[test]
+        fn the_calendar_of_shaders_is_that_of_the_host(step in steps(), at in prop::option::weighted(0.9, moments())) {
+            let operator = Operator::new(&step, 0.0).expect("an operator");
+            let definition = &crate::shader::handlers()[operator.handler as usize];
+            let program = HostProgram::new(definition).expect("a program");
+            let words = program.moment(at.map_or(TIMELESS, Moment::words), &operator.words).expect("a moment");
+            let expected = operator.apply(at).map_or(TIMELESS, Moment::words);
+            prop_assert_eq!(words, expected, "{:?} of {:?}", step, at);
+        }
+
+        /// What is told of where moments go holds of all of them.
+        #[test]
+        fn ranges_hold_what_is_in_them(step in steps(), mut moments in prop::collection::vec(moments(), 3)) {
+            moments.sort_unstable();
+            let operator = Operator::new(&step, 0.0).expect("an operator");
+            let [low, high] = operator.range(Some([moments[0], moments[2]])).expect("a range");
+            let made = operator.apply(Some(moments[1])).expect("a moment");
+            prop_assert!(low <= made && made <= high, "{} is not in {} to {}", made.written(), low.written(), high.written());
+        }
+    }
+
+    #[test]
+    fn all_operators_of_the_program_run_on_the_host() {
+        let names: Vec<&str> = asked_for(AskedBy::Times).filter(|h| !h.is_users).map(|h| h.name.as_str()).collect();
+        assert_eq!(names, [SET, "shift", "ceil", "floor", "time-of-day", LOOP]);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_told() {
+        let wrong = |op: &str, parameters: &[(&str, &str)]| {
+            let parameters = parameters.iter().map(|(k, v)| ((*k).to_owned(), Parameter::Text((*v).to_owned())));
+            Operator::new(&Handled { handler: op.to_owned(), parameters: parameters.collect() }, 0.0).expect_err(op)
+        };
+        assert!(wrong("sett", &[]).contains("did you mean \"set\""));
+        assert_eq!(wrong("set", &[]), "at is missing");
+        assert!(wrong("set", &[("at", "../1890")]).contains("no beginning"));
+        assert!(wrong("floor", &[("unit", "-1 year")]).contains("is no unit"));
+        assert!(wrong("time-of-day", &[("time", "24:00")]).contains("no time of day"));
+        assert!(wrong("loop", &[("begin", "1900"), ("end", "1900")]).contains("later than begin"));
+        assert!(wrong("loop", &[("begin", "1900"), ("end", "1901"), ("per_second", "0 s")]).contains("more than none"));
+    }
+}
