@@ -108,125 +108,31 @@ fn shifted(at: Moment, by: Duration) -> Moment {
     return in_calendar(Moment(moved.hour + by.hours + select(0, 1, is_carried), micro));
 }
 
-// 64 bits, as 16 each, low first.
-struct Wide {
-    a: u32,
-    b: u32,
-    c: u32,
-    d: u32,
+// What moments are rounded to: so many months; or none, and so many times a part of an hour that divides it.
+struct Unit {
+    months: i32,
+    count: u32,                 // 1 .. 65,535
+    base: u32,                  // microseconds, 1 .. 3,600,000,000
 }
 
-fn wide_of(hours: u32, micro: u32) -> Wide {
-    // hours * 3,600,000,000 + micro; 3,600,000,000 is 54931 * 65536 + 41984.
-    let low = hours & 65535u;
-    let high = hours >> 16u;
-    let a = low * 41984u + (micro & 65535u);
-    let b = (a >> 16u) + low * 54931u;
-    let b_more = (micro >> 16u) + (b & 65535u);
-    let b_high = b_more & 65535u;
-    let second = high * 41984u + b_high;
-    let c = (second >> 16u) + (b >> 16u) + (b_more >> 16u);
-    let c_more = high * 54931u + c;
-    return Wide(a & 65535u, second & 65535u, c_more & 65535u, c_more >> 16u);
-}
-
-fn wide_is_less(x: Wide, y: Wide) -> bool {
-    if x.d != y.d {
-        return x.d < y.d;
-    }
-    if x.c != y.c {
-        return x.c < y.c;
-    }
-    if x.b != y.b {
-        return x.b < y.b;
-    }
-    return x.a < y.a;
-}
-
-fn wide_less(x: Wide, y: Wide) -> Wide {
-    let a = x.a + 65536u - y.a;
-    let b = x.b + 65535u - y.b + (a >> 16u);
-    let c = x.c + 65535u - y.c + (b >> 16u);
-    let d = x.d + 65535u - y.d + (c >> 16u);
-    return Wide(a & 65535u, b & 65535u, c & 65535u, d & 65535u);
-}
-
-fn wide_bit(x: Wide, bit: u32) -> u32 {
-    let words = array<u32, 4>(x.a, x.b, x.c, x.d);
-    return (words[bit >> 4u] >> (bit & 15u)) & 1u;
-}
-
-fn wide_twice(x: Wide, bit: u32) -> Wide {
-    let a = 2u * x.a + bit;
-    let b = 2u * x.b + (a >> 16u);
-    let c = 2u * x.c + (b >> 16u);
-    let d = 2u * x.d + (c >> 16u);
-    return Wide(a & 65535u, b & 65535u, c & 65535u, d & 65535u);
-}
-
-// The rest of a division, bit by bit.
-fn wide_rest(x: Wide, by: Wide) -> Wide {
-    var rest = Wide(0u, 0u, 0u, 0u);
-    for (var i = 0u; i < 64u; i++) {
-        rest = wide_twice(rest, wide_bit(x, 63u - i));
-        if !wide_is_less(rest, by) {
-            rest = wide_less(rest, by);
-        }
-    }
-    return rest;
+// Whole bases and microseconds of one.
+struct Part {
+    bases: u32,
+    micro: u32,
 }
 
 // How long the unit that holds a moment has gone on: of units without months.
-fn since_unit(at: Moment, unit: Duration) -> Duration {
-    if unit.micro == 0u {
-        // Whole weeks are counted from Mondays.
-        let origin = select(0, 96, unit.hours % 168 == 0);
-        return Duration(0, floor_mod(at.hour - origin, unit.hours), at.micro);
-    }
-    if unit.hours == 0 && MICROS_OF_HOUR % unit.micro == 0u {
-        return Duration(0, 0, at.micro % unit.micro);
-    }
-    // Before 1970 the rest is what is missing of a unit.
-    let is_early = at.hour < 0;
-    let before = wide_of(u32(abs(at.hour)), 0u);
-    let length = wide_of(u32(unit.hours), unit.micro);
-    var rest = wide_rest(wide_of(u32(max(at.hour, 0)), at.micro), length);
-    if is_early {
-        let missing = wide_rest(before, length);
-        let part = wide_rest(wide_of(0u, at.micro), length);
-        // part - missing, once around.
-        if wide_is_less(part, missing) {
-            rest = wide_sum(part, length);
-        } else {
-            rest = part;
-        }
-        rest = wide_less(rest, missing);
-    }
-    return duration_of(rest);
+fn since_unit(at: Moment, unit: Unit) -> Part {
+    // Whole weeks are counted from Mondays.
+    let origin = select(0, 96, unit.base == MICROS_OF_HOUR && unit.count % 168u == 0u);
+    let hours = u32(floor_mod(at.hour - origin, i32(unit.count)));
+    let of_hours = (hours * ((MICROS_OF_HOUR / unit.base) % unit.count)) % unit.count;
+    return Part((of_hours + (at.micro / unit.base) % unit.count) % unit.count, at.micro % unit.base);
 }
 
-fn wide_sum(x: Wide, y: Wide) -> Wide {
-    let a = x.a + y.a;
-    let b = x.b + y.b + (a >> 16u);
-    let c = x.c + y.c + (b >> 16u);
-    let d = x.d + y.d + (c >> 16u);
-    return Wide(a & 65535u, b & 65535u, c & 65535u, d & 65535u);
-}
-
-// Hours and microseconds of so many microseconds, less than 2^31 hours.
-fn duration_of(micros: Wide) -> Duration {
-    let hour = wide_of(1u, 0u);
-    var hours = 0u;
-    var rest = Wide(0u, 0u, 0u, 0u);
-    for (var i = 0u; i < 64u; i++) {
-        rest = wide_twice(rest, wide_bit(micros, 63u - i));
-        hours = 2u * hours;
-        if !wide_is_less(rest, hour) {
-            rest = wide_less(rest, hour);
-            hours += 1u;
-        }
-    }
-    return Duration(0, i32(hours), rest.a + 65536u * rest.b);
+fn duration_of(part: Part, unit: Unit) -> Duration {
+    let per_hour = MICROS_OF_HOUR / unit.base;
+    return Duration(0, i32(part.bases / per_hour), (part.bases % per_hour) * unit.base + part.micro);
 }
 
 fn earlier(at: Moment, by: Duration) -> Moment {
@@ -236,16 +142,16 @@ fn earlier(at: Moment, by: Duration) -> Moment {
 }
 
 // The last full unit that is not after it.
-fn floored(at: Moment, unit: Duration) -> Moment {
+fn floored(at: Moment, unit: Unit) -> Moment {
     if unit.months > 0 {
         let count = month_count(date_of_day(floor_div(at.hour, 24)));
         return in_calendar(Moment(24 * day_of_date(date_in_month(count - floor_mod(count, unit.months), 1)), 0u));
     }
-    return earlier(at, since_unit(at, unit));
+    return earlier(at, duration_of(since_unit(at, unit), unit));
 }
 
 // The first full unit that is not before it: one that is full stays.
-fn ceiled(at: Moment, unit: Duration) -> Moment {
+fn ceiled(at: Moment, unit: Unit) -> Moment {
     if unit.months > 0 {
         let floor = floored(at, unit);
         if floor.hour == at.hour && floor.micro == at.micro {
@@ -255,13 +161,13 @@ fn ceiled(at: Moment, unit: Duration) -> Moment {
         return in_calendar(Moment(24 * day_of_date(date_in_month(count - floor_mod(count, unit.months) + unit.months, 1)), 0u));
     }
     let since = since_unit(at, unit);
-    if since.hours == 0 && since.micro == 0u {
+    if since.bases == 0u && since.micro == 0u {
         return at;
     }
     // What is missing of the unit, which is not all of it.
-    let is_borrowed = unit.micro < since.micro;
-    let micro = select(unit.micro - since.micro, unit.micro + (MICROS_OF_HOUR - since.micro), is_borrowed);
-    return shifted(at, Duration(0, unit.hours - since.hours - select(0, 1, is_borrowed), micro));
+    let is_between = since.micro > 0u;
+    let missing = Part(unit.count - since.bases - select(0u, 1u, is_between), select(0u, unit.base - since.micro, is_between));
+    return shifted(at, duration_of(missing, unit));
 }
 
 // The same day at so long after midnight.

@@ -99,18 +99,16 @@ impl Moment {
     /// The first full unit that is not before it: one that is full stays.
     #[must_use]
     pub fn ceiled(self, unit: Unit) -> Self {
-        if self.floored(unit) == self {
-            return self;
-        }
         match unit {
+            Unit::Months(_) if self.floored(unit) == self => self,
             Unit::Months(months) => {
                 let (count, months) = (self.months(), i64::from(months));
                 Self::of_month(count - count.rem_euclid(months) + months)
             }
-            Unit::Micros(micros) => {
-                let since = self.0 - unit.origin();
-                Self::within(self.0.saturating_add(micros - since.rem_euclid(micros)))
-            }
+            Unit::Micros(micros) => match (self.0 - unit.origin()).rem_euclid(micros) {
+                0 => self,
+                since => Self::within(self.0.saturating_add(micros - since)),
+            },
         }
     }
 

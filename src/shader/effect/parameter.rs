@@ -34,7 +34,7 @@ pub enum ParameterKind {
     Moment,
     /// A span of time, as [`Span`] reads it; in WGSL a `Duration`.
     Span,
-    /// A unit that moments are rounded to, as [`Unit`] reads it; in WGSL a `Duration`.
+    /// A unit that moments are rounded to, as [`Unit`] reads it; in WGSL a `Unit`.
     Unit,
     /// A time of day, `"14:30"`, less than 24 hours; in WGSL a `Duration` without months.
     Clock,
@@ -54,7 +54,8 @@ impl ParameterKind {
             Self::Word(_) | Self::Shares | Self::Colors => Some(("u32", 1)),
             Self::Color | Self::Vector => Some(("vec3f", 3)),
             Self::Moment => Some(("Moment", 2)),
-            Self::Span | Self::Unit | Self::Clock => Some(("Duration", 3)),
+            Self::Span | Self::Clock => Some(("Duration", 3)),
+            Self::Unit => Some(("Unit", 3)),
             Self::Text | Self::Numbers | Self::Texts => None,
         }
     }

@@ -67,6 +67,7 @@ pub(super) fn parameters_source(effect: &EffectDefinition) -> String {
             "u32" => format!("u32({})", float()),
             "vec3f" => format!("vec3f({}, {}, {})", float(), float(), float()),
             "Moment" => format!("Moment({}, {})", int(), word()),
+            "Unit" => format!("Unit({}, {}, {})", int(), word(), word()),
             "Duration" => format!("Duration({}, {}, {})", int(), int(), word()),
             _ => float(),
         })

@@ -148,6 +148,9 @@ fn in_words(type_name: &str, words: &mut impl Iterator<Item = u32>) -> Value {
     let real = |word: u32| Dual::constant(f32::from_bits(word).into());
     match type_name {
         "Moment" => Value::Many(vec![int(next()), Value::Scalar(Scalar::Uint(next()))]),
+        "Unit" => {
+            Value::Many(vec![int(next()), Value::Scalar(Scalar::Uint(next())), Value::Scalar(Scalar::Uint(next()))])
+        }
         "Duration" => Value::Many(vec![int(next()), int(next()), Value::Scalar(Scalar::Uint(next()))]),
         "bool" => Value::Scalar(Scalar::Bool(f32::from_bits(next()) != 0.0)),
         "u32" => Value::Scalar(Scalar::Uint(f32::from_bits(next()) as u32)),

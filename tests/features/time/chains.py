@@ -71,13 +71,13 @@ def floor(at, months, micros):
 
 
 def ceil(at, months, micros):
-    if floor(at, months, micros) == at:
-        return at
     if months:
+        if floor(at, months, micros) == at:
+            return at
         count = months_of(at)
         return in_month(count - count % months + months, 1, 0)
     origin = 4 * DAY if micros % (7 * DAY) == 0 else 0
-    return within(at - (at - origin) % micros + micros)
+    return within(at + (origin - at) % micros)
 
 
 class Random:
