@@ -23,6 +23,8 @@ mod overlay_walks;
 mod own_handlers;
 #[path = "data/pictures.rs"]
 mod pictures;
+#[path = "data/register.rs"]
+mod register;
 #[path = "data/scenes.rs"]
 mod scenes;
 #[path = "data/shadows.rs"]
@@ -75,6 +77,7 @@ fn main() {
         overlay_walks::trials(),
         own_handlers::trials(),
         pictures::trials(),
+        register::trials(),
         scenes::trials(),
         shadows::trials(),
         standing::trials(),

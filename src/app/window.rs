@@ -216,6 +216,7 @@ impl Window {
             roots,
             up: self.spec.up,
             materials: self.spec.materials,
+            joins: self.spec.joins.clone(),
             ..LoadOptions::default()
         };
         self.render_thread.open(self.spec.clone(), reading);
@@ -223,7 +224,7 @@ impl Window {
 
     /// Loads again what edits of the scene ask for: other files, another level of detail.
     fn follow_city(&mut self) {
-        let is_other = self.document.scene().city != self.spec;
+        let is_other = !self.document.scene().city.loads_as(&self.spec);
         if self.city.is_none() || self.loading.is_some() || !is_other || self.document.scene().city.files.is_empty() {
             return;
         }

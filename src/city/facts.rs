@@ -6,8 +6,13 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use crate::{
-    city::model::{Attribute, CityModel, Geometry, Lod, NONE, StringId, Value},
+    city::{
+        join::JoinFacts,
+        lifetime::{Dating, Lifetimes},
+        model::{Attribute, CityModel, Geometry, Lod, NONE, StringId, Value},
+    },
     geom::Aabb,
+    time::Granularity,
 };
 
 /// The number of distinct values of an attribute that are listed at most.
@@ -37,6 +42,10 @@ pub struct Facts {
     /// Per attribute of city objects, in the order of first appearance.
     #[serde(serialize_with = "as_map")]
     pub attributes: Vec<(String, AttributeFacts)>,
+    /// Side tables that were joined, in order.
+    pub joins: Vec<JoinFacts>,
+    /// When objects are there; `None`: no attribute says so.
+    pub time: Option<TimeFacts>,
     /// Texture images.
     pub textures: TextureFacts,
     /// Faces that are in the files but not drawn, because something is wrong with them.
@@ -52,6 +61,58 @@ pub struct Facts {
     /// *Text only*: geometries made of closed shells, and all geometries.
     #[serde(skip)]
     pub solids: [u64; 2],
+}
+
+/// When objects are there, by their attributes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TimeFacts {
+    /// The attribute that says since when.
+    pub from: Option<String>,
+    /// The attribute that says until when.
+    pub until: Option<String>,
+    /// The first moment at which something comes or goes, as short as it is exact.
+    pub first: Option<String>,
+    /// The last.
+    pub last: Option<String>,
+    /// How finely most dates are said: `year`, `month`, `day`, `minute`, `second`, `microsecond`.
+    pub granularity: Option<&'static str>,
+    /// Objects with one date or two, of their own or a parent's.
+    pub dated: u64,
+    /// Objects without.
+    pub undated: u64,
+    /// Objects that end when they begin, or before.
+    pub empty: u64,
+    /// Values that are no times.
+    pub unreadable: u64,
+    /// The first of them: whose, and what would be right.
+    pub first_unreadable: Option<String>,
+}
+
+impl TimeFacts {
+    /// Of a city, by the attributes that are asked for or known; `None`: there is none.
+    ///
+    /// # Errors
+    /// An attribute that is asked for is not there.
+    pub fn new(city: &CityModel, dating: &Dating) -> Result<Option<Self>, String> {
+        let found = Lifetimes::new(city, dating)?;
+        if found.from.is_none() && found.until.is_none() {
+            return Ok(None);
+        }
+        let [first, last] = found.span.map_or([None, None], |span| span.map(|moment| Some(moment.written())));
+        let unreadable = found.unreadable.as_ref();
+        Ok(Some(Self {
+            from: found.from,
+            until: found.until,
+            first,
+            last,
+            granularity: found.granularity.map(Granularity::word),
+            dated: found.dated,
+            undated: found.undated,
+            empty: found.empty,
+            unreadable: unreadable.map_or(0, |unreadable| unreadable.count),
+            first_unreadable: unreadable.map(|unreadable| format!("{}: {}", unreadable.object, unreadable.message)),
+        }))
+    }
 }
 
 /// A box.
@@ -198,6 +259,9 @@ pub fn facts(city: &CityModel, list: bool) -> Facts {
         objects: object_facts(city, list),
         lods: lod_facts(city),
         attributes: attribute_facts(city),
+        joins: city.joins.clone(),
+        // Without being asked for nothing can be missing.
+        time: TimeFacts::new(city, &Dating::default()).unwrap_or_default(),
         textures: TextureFacts {
             declared: city.textures.len() as u64,
             found: city.textures.iter().filter(|t| !t.image.is_missing()).count() as u64,
@@ -631,7 +695,7 @@ mod tests {
         let json = serde_json::to_value(facts(&CityModel::default(), true)).unwrap();
         let empty = json!({
             "format": "", "version": null, "crs": null, "crs_raw": null, "extent": null,
-            "objects": {"total": 0, "by_type": {}, "list": []}, "lods": {}, "attributes": {},
+            "objects": {"total": 0, "by_type": {}, "list": []}, "lods": {}, "attributes": {}, "joins": [], "time": null,
             "textures": {"declared": 0, "found": 0}, "faces_dropped": 0, "warnings": [],
         });
         assert_eq!(json, empty);

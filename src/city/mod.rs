@@ -11,6 +11,7 @@ pub mod edges;
 pub mod facts;
 pub mod gltf;
 pub mod ground;
+pub mod join;
 pub mod json;
 pub mod kept_measures;
 pub mod label;

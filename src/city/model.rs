@@ -21,7 +21,7 @@ use glam::{DVec3, IVec3};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::{
-    city::{kept_measures::Measured, strings::Strings, warning::Warnings},
+    city::{join::JoinFacts, kept_measures::Measured, strings::Strings, warning::Warnings},
     geom::{Aabb, plane::Plane},
 };
 
@@ -133,6 +133,8 @@ pub struct CityModel {
     pub extent_as_read: Aabb,
     /// Faces that loaders could not even hand over, each with a warning; [`Geometry::dropped`] counts the others.
     pub faces_dropped: u64,
+    /// The side tables whose attributes its objects have.
+    pub joins: Vec<JoinFacts>,
     /// Members of the file that are not read, kept as JSON: (where, text).
     pub unknown: Vec<(String, String)>,
     /// The faults that were lived with.
@@ -516,7 +518,8 @@ impl CityModel {
             TextureImage::File(path) => Some(path.clone()),
             TextureImage::Bytes(_) | TextureImage::Missing(_) => None,
         };
-        self.read_beside.iter().cloned().chain(self.textures.iter().filter_map(file)).collect()
+        let tables = self.joins.iter().map(|join| join.file.clone());
+        self.read_beside.iter().cloned().chain(tables).chain(self.textures.iter().filter_map(file)).collect()
     }
 
     /// Whether its file does not say what it is.

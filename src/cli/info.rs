@@ -3,7 +3,7 @@
 mod place;
 mod sights;
 
-use std::path::PathBuf;
+use std::{path::PathBuf, str::FromStr};
 
 use clap::Args;
 use serde::Serialize;
@@ -11,17 +11,21 @@ use serde::Serialize;
 use crate::{
     city::{
         CityModel,
-        facts::{self, Facts},
+        facts::{self, Facts, TimeFacts},
+        join::Join,
         shown::shown_geometries,
         spatial::SpatialIndex,
     },
     cli::{
         arguments::GlobalArguments,
         failure::{Failure, Outcome},
-        load, output, report,
+        load, output,
+        render::{self, arguments::scene_among},
+        report,
         terminal::Paint,
     },
     lens::nearest::did_you_mean,
+    scene::CitySpec,
     view::Field,
     visibility,
 };
@@ -40,6 +44,8 @@ Examples:
                                                 from where one object is seen best, as cameras for scenes
   veduta info --at 85010.5,447320 city.city.json
                                                 the height of ground and roof at a place, and whose it is
+  veduta info --join register.csv,pand city.city.json
+                                                with the attributes of a side table, and what was joined
   veduta info --json city.glb | jq .objects.total
   zcat city.json.gz | veduta info -             from a pipe
 
@@ -49,9 +55,18 @@ The keys of --json are documented in docs/info.md, warning codes in docs/warning
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// City files or folders of them, `-` for stdin; several make one city
+    /// City files or folders of them, `-` for stdin; several make one city. Or a scene (.toml), whose city is meant, with its side tables
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
+    /// Join a side table, CSV or GeoJSON, by its column KEY (else the first, or `id`) and the objects' ids, or their ATTRIBUTE
+    #[arg(long, value_name = "FILE[,KEY[,ATTRIBUTE]]")]
+    pub join: Vec<SideTable>,
+    /// The attribute that says since when an object is there
+    #[arg(long, value_name = "ATTRIBUTE")]
+    pub from: Option<String>,
+    /// The attribute that says until when, not included
+    #[arg(long, value_name = "ATTRIBUTE")]
+    pub until: Option<String>,
     /// Write one JSON object instead of text
     #[arg(long)]
     pub json: bool,
@@ -89,18 +104,65 @@ pub struct Answer {
     pub landmarks: Option<Vec<LandmarkFacts>>,
 }
 
+/// A side table as the command line names it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SideTable(pub Join);
+
+impl FromStr for SideTable {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts: Vec<&str> = text.split(',').collect();
+        let (file, key, attribute) = match parts[..] {
+            [file] => (file, "", None),
+            [file, key] => (file, key, None),
+            [file, key, attribute] => (file, key, Some(attribute.to_owned()).filter(|name| !name.is_empty())),
+            _ => return Err("FILE, FILE,KEY or FILE,KEY,ATTRIBUTE would be right".to_owned()),
+        };
+        match file.is_empty() {
+            true => Err("FILE is missing".to_owned()),
+            false => Ok(Self(Join { file: file.into(), key: key.to_owned(), attribute })),
+        }
+    }
+}
+
+/// The city that is meant: that of a scene, or files.
+fn spec(arguments: &Arguments, global: &GlobalArguments) -> Outcome<CitySpec> {
+    let scene = scene_among(&arguments.files);
+    if scene.is_some() && arguments.files.len() > 1 {
+        return Err(Failure::usage(
+            "info: one scene (.toml) or any number of city files; a scene names its files itself",
+        ));
+    }
+    let (scene, _) = render::scene_of(&arguments.files, &[], &render::options_of(scene, global))?;
+    let mut spec = scene.city;
+    spec.joins.extend(arguments.join.iter().map(|table| table.0.clone()));
+    spec.dating.from = arguments.from.clone().or(spec.dating.from);
+    spec.dating.until = arguments.until.clone().or(spec.dating.until);
+    Ok(spec)
+}
+
 /// Loads the files and says what is in them.
 pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
-    let (city, _) = load::load(&arguments.files, global)?;
+    let spec = spec(arguments, global)?;
+    let (city, _) = load::load_city(&spec, global)?;
     let best_views = arguments.best_views.as_ref().map(|id| best_views(&city, id)).transpose()?;
     let landmarks = arguments.landmarks.map(|n| landmarks(&city, n));
     let at = arguments.at.map(|Place(at)| PlaceFacts::new(&city, at));
     if let Some(file) = &arguments.scene {
         output::check([file], arguments.files.iter().chain(&city.files_beside()))?;
-        let text = sights::scene(&arguments.files, landmarks.iter().flatten(), file);
+        let text = sights::scene(&spec.files, landmarks.iter().flatten(), file);
         output::write(file, |out| out.write_all(text.as_bytes()))?;
     }
-    let answer = Answer { facts: facts::facts(&city, arguments.list), at, best_views, landmarks };
+    let mut facts = facts::facts(&city, arguments.list);
+    facts.time = TimeFacts::new(&city, &spec.dating).map_err(|message| {
+        Failure::failed(message.replacen(
+            "city.",
+            if scene_among(&arguments.files).is_some() { "city." } else { "--" },
+            1,
+        ))
+    })?;
+    let answer = Answer { facts, at, best_views, landmarks };
     if arguments.json {
         return output::print(&(serde_json::to_string_pretty(&answer).map_err(Failure::failed)? + "\n"));
     }

@@ -12,6 +12,7 @@ use crate::{
         failure::{Failure, Outcome},
         terminal,
     },
+    scene::CitySpec,
 };
 
 /// Shows which file loading is at.
@@ -38,6 +39,19 @@ pub fn load(files: &[PathBuf], global: &GlobalArguments) -> Outcome<(CityModel, 
     let options =
         LoadOptions { allow_outside: global.allow_outside, roots: named_folders(files), ..LoadOptions::default() };
     load_with(files, &options, global)
+}
+
+/// Loads the city that a scene, or a command, means.
+pub fn load_city(spec: &CitySpec, global: &GlobalArguments) -> Outcome<(CityModel, LoadStats)> {
+    let options = LoadOptions {
+        allow_outside: global.allow_outside,
+        roots: named_folders(&spec.files),
+        up: spec.up,
+        materials: spec.materials,
+        joins: spec.joins.clone(),
+        ..LoadOptions::default()
+    };
+    load_with(&spec.files, &options, global)
 }
 
 /// [`load()`], with folders that paths inside the files may lead to, those of the files themselves always among them, and with what

@@ -37,6 +37,8 @@ pub fn text(answer: &Answer, sources: &[Source], paint: Paint) -> String {
     report.levels(facts);
     report.surfaces(facts);
     report.attributes(facts);
+    report.time(facts);
+    report.joins(facts);
     report.textures(facts);
     report.warnings(facts);
     report.list(facts);
@@ -207,6 +209,53 @@ impl Report {
         self.line("", &format!("top at {top:.2} m{above}: {} ({})", clean(object), clean(kind)));
     }
 
+    fn time(&mut self, facts: &Facts) {
+        let Some(time) = &facts.time else { return };
+        self.gap();
+        let named = |word: &str, name: &Option<String>| name.as_ref().map(|name| format!("{word} {}", clean(name)));
+        let names: Vec<String> = named("from", &time.from).into_iter().chain(named("until", &time.until)).collect();
+        let span = time.first.as_ref().zip(time.last.as_ref()).map(|(first, last)| format!(": {first} … {last}"));
+        self.line("Time", &format!("{}{}", cut(&names.join(", "), WIDTH - INDENT - 50), span.unwrap_or_default()));
+        let mut counts = vec![format!("{} dated", count(time.dated)), format!("{} undated", count(time.undated))];
+        let others =
+            [(time.empty, "end when they begin, and are never there"), (time.unreadable, "values are no times")];
+        counts.extend(others.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{} {what}", count(*n))));
+        self.line("", &self.paint.faint(&counts.join(", ")));
+        if let Some(first) = &time.first_unreadable {
+            let line = self.paint.warning(&cut(&clean(first), WIDTH - INDENT));
+            self.line("", &line);
+        }
+    }
+
+    fn joins(&mut self, facts: &Facts) {
+        for (i, join) in facts.joins.iter().enumerate() {
+            if i == 0 {
+                self.gap();
+            }
+            let by = match &join.attribute {
+                Some(attribute) => format!("{} = {}", clean(&join.key), clean(attribute)),
+                None => format!("{} = id", clean(&join.key)),
+            };
+            let name = cut(&clean(&join.file.display().to_string()), WIDTH - INDENT - by.len().min(40) - 2);
+            self.line(if i == 0 { "Joined" } else { "" }, &format!("{}  {}", self.paint.strong(&name), cut(&by, 40)));
+            let mut counts = vec![
+                format!("{} of {} rows joined", count(join.joined), count(join.rows)),
+                format!("{} objects got {} attributes", count(join.objects), join.attributes.len()),
+            ];
+            if join.repeated > 0 {
+                counts.push(format!("{} rows repeat a key", count(join.repeated)));
+            }
+            self.line("", &self.paint.faint(&counts.join(", ")));
+            if join.without_object > 0 {
+                let keys: Vec<String> = join.first_without_object.iter().map(|key| clean(key)).collect();
+                let more = if join.without_object > keys.len() as u64 { ", …" } else { "" };
+                let line = format!("{} rows of no object: {}{more}", count(join.without_object), keys.join(", "));
+                let line = self.paint.warning(&cut(&line, WIDTH - INDENT));
+                self.line("", &line);
+            }
+        }
+    }
+
     fn textures(&mut self, facts: &Facts) {
         let textures = facts.textures;
         if textures.declared > 0 {
@@ -346,6 +395,30 @@ mod tests {
             objects: ObjectFacts { total: 4, by_type: vec![], list: None },
             lods: vec![("2.2".into(), Default::default())],
             attributes: vec![("x".repeat(300), attribute)],
+            joins: vec![crate::city::join::JoinFacts {
+                file: "z/".repeat(120).into(),
+                key: "\u{1b}k".repeat(90),
+                attribute: Some("n".repeat(300)),
+                rows: 9,
+                joined: 5,
+                objects: 6,
+                without_object: 3,
+                first_without_object: vec!["\u{1b}".into(), "q".repeat(300)],
+                repeated: 1,
+                attributes: vec!["a".into()],
+            }],
+            time: Some(crate::city::facts::TimeFacts {
+                from: Some("f".repeat(300)),
+                until: Some("u\u{1b}".repeat(300)),
+                first: Some("1890".into()),
+                last: Some("1950-05-03T14:05:30.000025".into()),
+                granularity: Some("year"),
+                dated: 4,
+                undated: 2,
+                empty: 1,
+                unreadable: 3,
+                first_unreadable: Some("\u{1b}".repeat(300)),
+            }),
             textures: TextureFacts { declared: 1, found: 0 },
             faces_dropped: 1,
             warnings: vec![crate::city::facts::WarningFacts {
@@ -373,7 +446,9 @@ mod tests {
         for line in text.lines() {
             assert!(line.chars().count() <= WIDTH, "{} columns: {line}", line.chars().count());
         }
-        for part in ["Amersfoort", "├ BuildingPart", "└ Room", "zero-area", "75 %", "1 named, 0 found"] {
+        for part in
+            ["Amersfoort", "├ BuildingPart", "└ Room", "zero-area", "75 %", "1 named, 0 found", "5 of 9 rows joined"]
+        {
             assert!(text.contains(part), "{part} is missing in:\n{text}");
         }
     }

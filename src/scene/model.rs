@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 
 use crate::{
-    city::{Materials, lifetime::Dating, load::Up},
+    city::{Materials, join::Join, lifetime::Dating, load::Up},
     lens::{
         EffectUse, Lens,
         best_view::{Background, BaseStyle, StyleLook},
@@ -69,6 +69,15 @@ pub struct CitySpec {
     pub ground: bool,
     /// Which attributes say when its objects are there.
     pub dating: Dating,
+    /// Side tables whose attributes its objects get.
+    pub joins: Vec<Join>,
+}
+
+impl CitySpec {
+    /// Whether another is the same city on the GPU: what only says when objects are there may differ.
+    pub fn loads_as(&self, other: &Self) -> bool {
+        *self == Self { dating: self.dating.clone(), ..other.clone() }
+    }
 }
 
 impl Default for CitySpec {
@@ -80,6 +89,7 @@ impl Default for CitySpec {
             materials: Materials::Tamed,
             ground: true,
             dating: Dating::default(),
+            joins: Vec::new(),
         }
     }
 }

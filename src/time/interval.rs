@@ -20,6 +20,18 @@ pub enum Granularity {
 }
 
 impl Granularity {
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Year => "year",
+            Self::Month => "month",
+            Self::Day => "day",
+            Self::Minute => "minute",
+            Self::Second => "second",
+            Self::Micro => "microsecond",
+        }
+    }
+
     /// The coarsest that says a moment exactly.
     pub fn of(moment: Moment) -> Self {
         let (_, month, day) = moment.date();

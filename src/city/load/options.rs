@@ -9,7 +9,7 @@ use std::{
 
 use glam::DVec3;
 
-use crate::city::model::Materials;
+use crate::city::{join::Join, model::Materials};
 
 /// Names of the files of a folder by their lower-case spelling; of several the first by name.
 type Listing = Arc<HashMap<String, OsString>>;
@@ -61,6 +61,8 @@ pub struct LoadOptions {
     pub up: Up,
     /// How colours of materials are shown.
     pub materials: Materials,
+    /// Side tables whose attributes its objects get.
+    pub joins: Vec<Join>,
     /// Folders in which files were looked for by other spellings.
     pub listings: Listings,
 }

@@ -224,6 +224,7 @@ pub fn open(
         roots,
         up: scene.city.up,
         materials: scene.city.materials,
+        joins: scene.city.joins.clone(),
         ..LoadOptions::default()
     };
     let (model, load) = load::load_with(&scene.city.files, &reading, global)?;

@@ -1,12 +1,13 @@
 //! `[city]` and `[sun]` in scene files.
 
 use crate::{
+    city::join::Join,
     figure::scene_file::{
         check::lod,
         forms::{Degrees, Same, Word},
         keys::{Kind, Table, key},
-        node::Data,
-        row::{Row, field, keys_of},
+        node::{Data, Node},
+        row::{self, Row, field, keys_of},
     },
     scene::{CitySpec, Sun},
 };
@@ -111,6 +112,69 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
         ),
         Word,
         |city: CitySpec| city.dating.undated
+    ),
+    Row::<CitySpec>::new(
+        key(
+            "join",
+            Kind::Tables(&JOIN),
+            "none",
+            "",
+            "Side tables whose columns become attributes of its objects, one after the other; a later one replaces what is there.",
+            "[{ file = \"register.csv\", key = \"pand\", attribute = \"identificatie\" }]",
+        ),
+        |city, options| {
+            let of = |join| row::written(JOIN_ROWS, join, &Join::default(), options);
+            (!city.joins.is_empty()).then(|| Data::list(city.joins.iter().map(of)))
+        },
+        |city, given| {
+            let nodes = given.node.list().unwrap_or_default();
+            let of = |(i, node): (usize, &Node)| {
+                let place = given.fields.place.within(&format!("join.{i}"), node.line);
+                let fields = given.reader.checker.fields(node, &JOIN, &[], place);
+                let mut join = Join::default();
+                row::read(JOIN_ROWS, &fields, given.reader, &mut join).then_some(join)
+            };
+            city.joins = nodes.iter().enumerate().filter_map(of).collect();
+        },
+    ),
+];
+
+/// An element of `join` of `[city]`.
+pub const JOIN: Table = Table {
+    name: "join",
+    doc: "A side table: CSV, or GeoJSON whose properties count. Its columns become attributes of the objects that its rows are of, everywhere. `veduta info` tells what was joined.",
+    keys: keys_of!(JOIN_ROWS),
+};
+
+const JOIN_ROWS: &[Row<Join>] = &[
+    Row::<Join>::new(
+        key("file", Kind::Text, "", "", "The table, relative to the scene file.", "\"register.csv\""),
+        |join, options| Some(Data::Text(options.written(&join.file))),
+        |join, given| join.file = given.file().unwrap_or_default(),
+    ),
+    field!(
+        key(
+            "key",
+            Kind::Text,
+            "the first column; of GeoJSON `id`",
+            "",
+            "The column that says of which object a row is. Of rows with the same the first counts.",
+            "\"pand\"",
+        ),
+        Same,
+        |join: Join| join.key
+    ),
+    field!(
+        key(
+            "attribute",
+            Kind::Text,
+            "the id of objects",
+            "",
+            "The attribute of objects, a text or a whole number, that has the same.",
+            "\"identificatie\"",
+        ),
+        Same,
+        |join: Join| join.attribute
     ),
 ];
 

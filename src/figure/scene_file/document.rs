@@ -10,7 +10,7 @@ use crate::{
         best_view::{LOOK, VIEWS},
         camera::CAMERA,
         choice::CHOICE,
-        city::{CITY, SUN},
+        city::{CITY, JOIN, SUN},
         content::CONTENT,
         deformation::{CONTROL, STEPS},
         figure::FIGURE,
@@ -40,6 +40,7 @@ use crate::{
 pub const TABLES: &[(&str, &Table)] = &[
     ("top level", &ROOT),
     ("[city]", &CITY),
+    ("join of [city]", &JOIN),
     ("[camera]", &CAMERA),
     ("[sun]", &SUN),
     ("[time]", &TIME),

@@ -7,6 +7,7 @@ use super::{tests::read_text, *};
 use crate::{
     city::{
         derived::{Derive, Form, Height},
+        join::Join,
         lifetime::{Dating, Undated},
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
@@ -675,6 +676,7 @@ prop_compose! {
         scene.city.files = files.into_iter().filter(|f| !f.contains("${")).map(Into::into).collect();
         scene.city.lod = lod.map(|tenths| crate::city::Lod { tenths }.to_string());
         scene.city.ground = ground;
+        scene.city.joins = (0..scene.lenses.len() % 3).map(|i| Join { file: format!("t{i}.csv").into(), key: from.clone().unwrap_or_default(), attribute: undated.then(|| "id".into()) }).collect();
         scene.city.dating = Dating { until: from.clone().filter(|_| clay), from, undated: if undated { Undated::Hide } else { Undated::Show } };
         scene
     }
