@@ -25,6 +25,7 @@ pub mod place;
 pub mod shown;
 pub mod spatial;
 mod strings;
+pub mod sun;
 pub mod synth;
 #[cfg(test)]
 pub(crate) mod test_city;

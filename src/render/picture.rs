@@ -21,6 +21,7 @@ use crate::{
         place::Places,
         shown::shown_geometries,
         spatial::SpatialIndex,
+        sun::{Site, SunPosition},
     },
     geom::{Aabb, deform::Deformers},
     gpu::{Gpu, GpuError, Timer},
@@ -50,7 +51,7 @@ use crate::{
         visible_share,
         volume::LensVolume,
     },
-    scene::{CitySpec, Drawn, Scene},
+    scene::{CitySpec, Drawn, Scene, Sun, SunTime},
     view::{Camera, CameraError, View, first_view},
 };
 
@@ -259,7 +260,34 @@ impl Studio {
     pub fn on_ground<'s>(&self, scene: &'s Scene) -> Result<Cow<'s, Scene>, RenderError> {
         // The index takes a moment to make: only where it is asked.
         let found = scene.on_ground(&|at| self.places().ground(at));
-        found.map_err(|problem| RenderError::Scene(problem.to_string()))
+        let mut scene = found.map_err(|problem| RenderError::Scene(problem.to_string()))?;
+        if let Some(sun) = self.sun_by_date(&scene)? {
+            scene.to_mut().sun = sun;
+        }
+        Ok(scene)
+    }
+
+    /// The sun of a scene that says when it shines, standing where it does then.
+    fn sun_by_date(&self, scene: &Scene) -> Result<Option<Sun>, RenderError> {
+        let sun = scene.sun;
+        let wrong = |message: String| RenderError::Scene(format!("[sun] {message}"));
+        let moment = match sun.when {
+            SunTime::Never => return Ok(None),
+            SunTime::At(moment) => moment,
+            SunTime::Scene => scene.moment.ok_or_else(|| {
+                wrong(
+                    "follows_time: the scene has no moment; [time] at = \"2026-06-21T16:00\" would be right".to_owned(),
+                )
+            })?,
+        };
+        let site = match sun.place {
+            Some(place) => Site::given(place.x, place.y),
+            None => Site::of_model(self.model.crs.as_deref(), self.extent().center().truncate())
+                .map_err(RenderError::Scene)?,
+        };
+        let offset_h = sun.utc_offset_h.unwrap_or_else(|| site.standard_offset_h());
+        let SunPosition { azimuth, elevation } = site.sun(moment, offset_h).map_err(wrong)?;
+        Ok(Some(Sun { azimuth, elevation, when: SunTime::Never, ..sun }))
     }
 
     /// The building that the eye of a scene is in, where its camera is given.

@@ -24,7 +24,7 @@ pub use drawn::Drawn;
 pub use look::SkyLight;
 pub use model::{
     Anchor, CHORD_PX, CitySpec, Column, DEFAULT_DPI, DEFAULT_SAMPLES, Figure, MM_PER_INCH, PAPER_DPI, PAPER_TEXT,
-    POINTS_PER_INCH, Paper, PiecePlace, Poi, PoiPlace, Scene, Style, Sun, TextSize,
+    POINTS_PER_INCH, Paper, PiecePlace, Poi, PoiPlace, Scene, Style, Sun, SunTime, TextSize,
 };
 pub use overlay::{Layout, Overlay};
 pub use technique::Technique;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
     city::{Materials, join::Join, lifetime::Dating, load::Up},
@@ -107,6 +107,24 @@ pub struct Sun {
     pub size: f64,
     /// Whether the city hides parts of the sky from itself, where the sun casts shadows; in pictures of several samples.
     pub ambient_occlusion: bool,
+    /// When it shines: in place of `azimuth` and `elevation`.
+    pub when: SunTime,
+    /// Where on the earth, degrees north and east; `None`: where the city's reference system says.
+    pub place: Option<DVec2>,
+    /// How far the city's clock is ahead of UTC, hours; `None`: whole hours by its longitude.
+    pub utc_offset_h: Option<f64>,
+}
+
+/// When the sun of a scene shines.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum SunTime {
+    /// It stands where the scene says.
+    #[default]
+    Never,
+    /// At a date and an hour of the city's clock.
+    At(Moment),
+    /// At the scene's own moment.
+    Scene,
 }
 
 impl Default for Sun {
@@ -118,6 +136,9 @@ impl Default for Sun {
             // As from the Earth.
             size: 0.53_f64.to_radians(),
             ambient_occlusion: true,
+            when: SunTime::Never,
+            place: None,
+            utc_offset_h: None,
         }
     }
 }

@@ -1,15 +1,18 @@
 //! `[city]` and `[sun]` in scene files.
 
+use glam::DVec2;
+
 use crate::{
     city::join::Join,
     figure::scene_file::{
         check::lod,
-        forms::{Degrees, Same, Word},
+        epoch::moment,
+        forms::{Degrees, Form as _, Same, Word},
         keys::{Kind, Table, key},
         node::{Data, Node},
         row::{self, Row, field, keys_of},
     },
-    scene::{CitySpec, Sun},
+    scene::{CitySpec, Sun, SunTime},
 };
 
 /// `[city]`.
@@ -225,5 +228,70 @@ pub const SUN_ROWS: &[Row<Sun>] = &[
         ),
         Same,
         |sun: Sun| sun.ambient_occlusion
+    ),
+    Row::<Sun>::new(
+        key(
+            "at",
+            Kind::Moment,
+            "none: by azimuth and elevation",
+            "",
+            "A date and an hour of the city's clock: the sun stands where it does then, by the city's place on the earth. See Sun and sky.",
+            "\"2026-06-21T16:00\"",
+        ),
+        |sun, _| match sun.when {
+            SunTime::At(moment) => Some(Data::Text(moment.written())),
+            SunTime::Never | SunTime::Scene => None,
+        },
+        |sun, given| sun.when = moment(given.node).map_or(sun.when, SunTime::At),
+    ),
+    Row::<Sun>::new(
+        key(
+            "follows_time",
+            Kind::Boolean,
+            "false",
+            "",
+            "Whether the sun stands where it does at the scene's moment, `[time] at`.",
+            "true",
+        ),
+        |sun, _| (sun.when == SunTime::Scene).then(|| true.into()),
+        |sun, given| match (given.node.data == Data::Boolean(true), sun.when) {
+            (true, SunTime::At(_)) => {
+                given.note("is given together with at: the sun shines at one time; leave out one of them")
+            }
+            (true, _) => sun.when = SunTime::Scene,
+            (false, _) => {}
+        },
+    ),
+    Row::<Sun>::new(
+        key(
+            "place",
+            Kind::PlanPoint,
+            "where the city's reference system says",
+            "degrees",
+            "Latitude and longitude, north and east positive, of the place where the sun is seen, for `at` and `follows_time`. North is then along y.",
+            "[52.01, 4.36]",
+        ),
+        |sun, _| Same::data(&sun.place),
+        |sun, given| match given.node.numbers::<2>() {
+            Some([latitude, longitude]) if latitude.abs() <= 90.0 && longitude.abs() <= 180.0 => {
+                sun.place = Some(DVec2::new(latitude, longitude));
+            }
+            _ => given.note(format!(
+                "must be [LATITUDE, LONGITUDE], -90 to 90 and -180 to 180 degrees, is {}",
+                given.node.quoted()
+            )),
+        },
+    ),
+    field!(
+        key(
+            "utc_offset_h",
+            Kind::Number { min: -14.0, max: 14.0 },
+            "whole hours by the longitude",
+            "h",
+            "How far the city's clock is ahead of UTC, for `at` and `follows_time`: in summer often an hour more.",
+            "2.0",
+        ),
+        Same,
+        |sun: Sun| sun.utc_offset_h
     ),
 ];

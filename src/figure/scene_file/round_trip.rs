@@ -23,7 +23,7 @@ use crate::{
     },
     scene::{
         Anchor, Animation, Background, BaseStyle, Column, Figure, Layout, Overlay, Paper, PiecePlace, Poi, PoiPlace,
-        Style, StyleLook, Sun, Technique, TextSize, Transparency,
+        Style, StyleLook, Sun, SunTime, Technique, TextSize, Transparency,
         above_ground::heights_of_lens,
         animation::{Change, ChangeKey, Numbers},
         overlay::{Along, BuiltInFrame, CallOut, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes, Stand},
@@ -665,7 +665,7 @@ prop_compose! {
             layout: layout.unwrap_or_default(),
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
             camera_above_ground: with_camera && ground,
-            sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2, ..Sun::default() },
+            sun: Sun { azimuth: (f64::from(sun.0) / 10.0).to_radians(), elevation: (f64::from(sun.1) / 10.0).to_radians(), shadows: sun.2, when: if sun.2 { moment.and_then(Moment::from_micros).map_or(SunTime::Never, SunTime::At) } else if clay { SunTime::Scene } else { SunTime::Never }, place: clay.then(|| DVec2::new(f64::from(sun.1) / 10.0, f64::from(sun.0) / 20.0)), utc_offset_h: sun.2.then(|| f64::from(sun.1) / 90.0), ..Sun::default() },
             style: Style { look: StyleLook::WORDS[sun.0.unsigned_abs() as usize % 5].1, base: if clay { BaseStyle::Clay } else { BaseStyle::Natural }, effects: vec![], background: background.map_or(Background::Sky, Background::Color), technique, transparency, chord_px, facades: !clay && ground },
             pois: poi.into_iter().enumerate().map(|(i, (text, at, o))| Poi { name: format!("p{i}"), place: if o { PoiPlace::Object(text) } else if i == 1 { PoiPlace::AboveGround(at) } else { PoiPlace::At(at) } }).chain(moving).collect(),
             lenses,

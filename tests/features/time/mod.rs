@@ -1,3 +1,4 @@
-//! Time (Tiesel chapter 4): the calendar against Python's, operators and loops.
+//! Time (Tiesel chapter 4): the calendar against Python's, operators and loops; the sun against an almanac.
 
 mod chains;
+mod sun;
