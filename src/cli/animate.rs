@@ -12,6 +12,7 @@ use crate::{
     cli::{
         arguments::GlobalArguments,
         failure::{Failure, Outcome},
+        film::{self, Film},
         output,
         quality::Smoothness,
         render::{self, arguments::Size},
@@ -19,7 +20,7 @@ use crate::{
     },
     figure::{
         self,
-        animation::{Film, FilmError},
+        animation::{self, FilmError},
         overlays::Standing,
         picture,
     },
@@ -34,7 +35,7 @@ Examples:
   veduta animate scene.toml -o frames --frames 0..49      frames 0 to 49, both included
   veduta animate scene.toml -o frames --set animation.fps=60
   veduta animate scene.toml -o frames --stats walk.jsonl  what each frame cost and did, a line of JSON each
-  ffmpeg -framerate 30 -i frames/%04d.png -pix_fmt yuv420p walk.mp4
+  veduta animate scene.toml -o frames --film walk.mp4     and a film of them, where ffmpeg is there
 
 The scene has a table [animation] (docs/scene.md). DIR gets 0000.png, 0001.png, ...; each frame is the picture that
 `veduta render` makes of the scene at its moment, but that occluders come and go gradually (`margin` and `fade` of
@@ -59,6 +60,9 @@ pub struct Arguments {
     /// How smooth pictures are.
     #[command(flatten)]
     pub smoothness: Smoothness,
+    /// Also make a film of the frames, .mp4 or .gif; repeatable. Without ffmpeg the line to run is told
+    #[arg(long, value_name = "FILE")]
+    pub film: Vec<Film>,
     /// Write statistics: of each frame a line, the JSON object of `veduta render --stats` with its `number` and `at_s`
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
@@ -115,7 +119,8 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if arguments.output.as_os_str() == "-" {
         return Err(Failure::usage("animate: frames are files, and cannot go to stdout; -o DIR would be right"));
     }
-    output::check(&arguments.stats, [file])?;
+    let films = arguments.film.iter().map(|film| &film.file);
+    output::check(arguments.stats.iter().chain(films.clone()), [file])?;
     let options = render::options_of(Some(file), global);
     let scene = figure::scene_file::read(file, &options).map_err(Failure::failed)?;
     let mut scene = render::changed(scene, &arguments.settings)?;
@@ -125,7 +130,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     }
     arguments.smoothness.put_into(&mut scene)?;
     let failed = |error: FilmError| Failure::failed(format!("{}: {error}", file.display()));
-    let film = Film::new(&scene).map_err(failed)?;
+    let film = animation::Film::new(&scene).map_err(failed)?;
     let all = Frames { first: None, last: None };
     let [first, last] = arguments.frames.unwrap_or(all).of(film.frames()).map_err(Failure::usage)?;
     // Before anything is drawn: a frame without a scene may be the last.
@@ -137,7 +142,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     (begin..=last).try_for_each(|frame| film.scene(frame).map(|_| ())).map_err(failed)?;
     let folder = Folder::new(&arguments.output, film.frames())?;
     let mut written: Vec<PathBuf> = (first..=last).map(|frame| folder.file(frame)).collect();
-    written.extend(arguments.stats.clone());
+    written.extend(arguments.stats.iter().chain(films).cloned());
     output::keep(&written, [file])?;
     let (mut studio, warnings) = render::open(&first_scene, &options, &written, global)?;
     let count = u64::from(last - first) + 1;
@@ -179,10 +184,13 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         picture::save_picture(&folder.file(frame), drawn.size, &drawn.rgba, true, &notes).map_err(output::unwritten)?;
         progress.at(u64::from(frame - first) + 1);
     }
-    match &arguments.stats {
-        Some(file) => output::write(file, |out| out.write_all(&lines)),
-        None => Ok(()),
+    if let Some(file) = &arguments.stats {
+        output::write(file, |out| out.write_all(&lines))?;
     }
+    drop(progress);
+    let pattern = folder.pattern();
+    let frames = film::Frames { pattern: &pattern, first, count, fps: film.fps() };
+    arguments.film.iter().try_for_each(|film| film.make(&frames))
 }
 
 /// Samples from which on a fade looks smooth: with fewer its pattern stands out on large faces.
@@ -234,6 +242,11 @@ impl Folder {
             );
         }
         Ok(folder)
+    }
+
+    /// Names of the frames, as ffmpeg has them.
+    fn pattern(&self) -> PathBuf {
+        self.path.join(format!("%0{}d.png", self.digits))
     }
 
     fn file(&self, frame: u32) -> PathBuf {

@@ -7,6 +7,7 @@ pub mod animate;
 pub mod arguments;
 pub mod effects;
 pub mod failure;
+mod film;
 pub mod gallery;
 pub mod info;
 pub mod load;

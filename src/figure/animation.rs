@@ -76,6 +76,7 @@ impl Film {
         let failed = |message| FilmError::Frame { frame, time, message };
         let mut scene = self.still.clone();
         scene.time_s += time;
+        scene.moment = self.animation.moment(frame).or(scene.moment);
         if let Some(path) = &self.camera {
             scene.camera = Some(path.at(time).map_err(|error| failed(format!("camera: {error}")))?);
         }

@@ -147,10 +147,22 @@ fn micros_of(seconds: f64) -> i64 {
     (seconds * 1e6).round() as i64
 }
 
-/// What is wrong with the steps of a lens, each with its place, its key and what would be right.
-pub fn problems(steps: &[Handled]) -> Vec<(usize, String)> {
-    let wrong = |(i, step): (usize, &Handled)| Operator::new(step, 0.0).err().map(|message| (i, message));
-    steps.iter().enumerate().filter_map(wrong).collect()
+/// The moment that some steps, one after the other, make of another, at a second of the scene.
+///
+/// # Errors
+/// A step that is none: which, and what would be right.
+pub fn moment_after(steps: &[Handled], at: Option<Moment>, clock_s: f64) -> Result<Option<Moment>, String> {
+    steps.iter().try_fold(at, |at, step| {
+        let operator =
+            Operator::new(step, clock_s).map_err(|message| format!("time, \"{}\": {message}", step.handler))?;
+        Ok(operator.apply(at))
+    })
+}
+
+/// The step that sets a moment.
+pub fn set_to(moment: Moment) -> Handled {
+    let at = ("at".to_owned(), Parameter::Text(moment.written()));
+    Handled { handler: SET.to_owned(), parameters: [at].into() }
 }
 
 /// No moment, as shaders have it.

@@ -24,6 +24,8 @@ pub struct Occlusion {
     remembered: BTreeMap<String, Remembered>,
     /// Tests asked so far.
     asked: u64,
+    /// Objects that are not there.
+    gone: Option<Arc<[bool]>>,
 }
 
 /// The occluders of one lens over time.
@@ -293,6 +295,15 @@ impl Occlusion {
         self.asked
     }
 
+    /// From now on these objects hide nothing, one flag per object of the city: they are not there at the scene's moment; `None`: all
+    /// are.
+    pub fn set_gone(&mut self, gone: Option<Arc<[bool]>>) {
+        if self.gone != gone {
+            self.gone = gone;
+            self.known.iter_mut().for_each(|known| known.found = None);
+        }
+    }
+
     /// Forgets what was not asked for since the last time.
     pub fn forget_others(&mut self) {
         self.known.retain(|known| known.is_wanted);
@@ -328,12 +339,14 @@ impl Occlusion {
         if let Some(found) = known.found.as_ref().filter(|found| found.viewer == viewer && found.how.serves(how)) {
             return found.clone();
         }
+        let gone = self.gone.as_deref().map(|gone| units.all_flagged(city.model, gone));
+        let forbidden = gone.map_or_else(|| known.forbidden.clone(), |gone| gone.or(&known.forbidden));
         let query = Query {
             viewer,
             pois: &known.pois,
             test: &of.test,
             forced: &known.forced,
-            forbidden: &known.forbidden,
+            forbidden: &forbidden,
             measured: how.is_measured,
             margin: how.has_margin.then_some(of.margin),
         };

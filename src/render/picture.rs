@@ -268,7 +268,10 @@ impl Studio {
     }
 
     /// The sun of a scene that says when it shines, standing where it does then.
-    fn sun_by_date(&self, scene: &Scene) -> Result<Option<Sun>, RenderError> {
+    ///
+    /// # Errors
+    /// Where the city is, or the sun was, is not known; the scene has no moment.
+    pub fn sun_by_date(&self, scene: &Scene) -> Result<Option<Sun>, RenderError> {
         let sun = scene.sun;
         let wrong = |message: String| RenderError::Scene(format!("[sun] {message}"));
         let moment = match sun.when {
@@ -287,7 +290,7 @@ impl Studio {
         };
         let offset_h = sun.utc_offset_h.unwrap_or_else(|| site.standard_offset_h());
         let SunPosition { azimuth, elevation } = site.sun(moment, offset_h).map_err(wrong)?;
-        Ok(Some(Sun { azimuth, elevation, when: SunTime::Never, ..sun }))
+        Ok(Some(Sun { azimuth, elevation, ..sun }))
     }
 
     /// The building that the eye of a scene is in, where its camera is given.

@@ -164,6 +164,7 @@ impl Surroundings<'_> {
         camera: &Camera,
         known: &mut Known,
     ) -> Result<SceneDeformations, ResolveError> {
+        known.occlusion.set_gone(self.gone(scene)?);
         if scene.lenses.iter().all(|lens| lens.deform().is_none()) {
             return Ok(SceneDeformations::default());
         }
@@ -261,6 +262,15 @@ impl Surroundings<'_> {
 }
 
 impl Surroundings<'_> {
+    /// The objects that are not there at the scene's moment; `None`: all are.
+    fn gone(&self, scene: &Scene) -> Result<Option<Arc<[bool]>>, ResolveError> {
+        if scene.moment.is_none() {
+            return Ok(None);
+        }
+        let lifetimes = self.lifetimes.of(self.model, &scene.city.dating).map_err(ResolveError::Scene)?;
+        Ok(Some(lifetimes.of.iter().map(|lifetime| !lifetime.holds(scene.moment)).collect()))
+    }
+
     /// Which moments show, and when objects are there.
     fn time(&self, scene: &Scene, contents: &SceneContents) -> Result<SceneTime, ResolveError> {
         let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;

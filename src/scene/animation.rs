@@ -2,7 +2,10 @@
 
 use glam::DVec3;
 
-use crate::view::path::{CameraKey, CameraPath, Curve, Path, PathError, Speed};
+use crate::{
+    time::{Moment, Span},
+    view::path::{CameraKey, CameraPath, Curve, Path, PathError, Speed},
+};
 
 /// Frames of one animation at most.
 pub const MOST_FRAMES: u32 = 1_000_000;
@@ -20,6 +23,8 @@ pub struct Animation {
     pub camera: Vec<CameraKey>,
     /// What else changes.
     pub changes: Vec<Change>,
+    /// The moments of the calendar that the first frame and the last one show, and evenly those between; `None`: the scene's.
+    pub moments: Option<[Moment; 2]>,
 }
 
 /// A value of the scene over time.
@@ -51,6 +56,16 @@ pub enum Numbers {
     One(f64),
     /// Several, `[x, y, z]`, or lists of such.
     List(Vec<Numbers>),
+}
+
+impl Animation {
+    /// The moment of the calendar that a frame shows, in whole microseconds; `None`: the scene's.
+    pub fn moment(&self, frame: u32) -> Option<Moment> {
+        let [first, last] = self.moments?;
+        let steps = i128::from(self.frames.max(2) - 1);
+        let gone = i128::from(last - first) * i128::from(frame) / steps;
+        Some(first.shifted(Span::of_micros(gone as i64)))
+    }
 }
 
 impl Numbers {

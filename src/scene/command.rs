@@ -4,6 +4,7 @@ use crate::{
     lens::{
         BestView, Lens,
         best_view::{Depiction, LocalView},
+        epoch::{moment_after, set_to},
     },
     scene::model::Scene,
     view::Camera,
@@ -73,15 +74,22 @@ impl Command {
         }))
     }
 
-    /// Steps through a portal: its eye becomes the main one, and the main one, `from`, its own, so that it leads back. `None`: there is no portal
+    /// Steps through a portal: its eye, and its moment where it has one, become the main ones, and the main ones, the eye `from`, its own, so that
+    /// it leads back. `None`: there is no portal
     /// at `index`.
     pub fn step_through(scene: &Scene, index: usize, from: Camera) -> Option<Self> {
         let lens = scene.lenses.get(index).filter(|lens| lens.kind.row().is_door)?;
         let Some(&LocalView::Camera { camera: to, above_ground }) = lens.best_view().and_then(BestView::view) else {
             return None;
         };
+        let then = moment_after(&lens.time, scene.moment, scene.time_s).unwrap_or(scene.moment);
+        let is_elsewhen = !lens.time.is_empty();
         Some(Self::of(format!("step through {}", lens.name), scene, |s| {
             (s.camera, s.camera_above_ground) = (Some(to), above_ground);
+            if is_elsewhen {
+                s.lenses[index].time = s.moment.map(set_to).into_iter().collect();
+                s.moment = then;
+            }
             if let Some(shown) = s.lenses[index].kind.best_view_mut() {
                 shown.depiction = Depiction::View(LocalView::Camera { camera: from, above_ground: false });
             }
@@ -182,7 +190,10 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::lens::kind::{Portal, SeeThrough};
+    use crate::{
+        lens::kind::{Portal, SeeThrough},
+        time::Moment,
+    };
 
     fn resized(scene: &Scene, width: u32) -> Command {
         Command::of(format!("width {width}"), scene, |s| s.figure.size[0] = width)
@@ -215,13 +226,22 @@ mod tests {
             look: None,
         };
         let portal = Lens::plain("gate", Portal { shown: shown.clone() }, [0.0; 3]);
-        let mut scene = Scene { camera: Some(here), lenses: vec![portal], ..Scene::default() };
+        let mut scene = Scene { camera: Some(here), lenses: vec![portal.clone()], ..Scene::default() };
         let before = scene.clone();
         Command::step_through(&scene, 0, here).unwrap().redo(&mut scene);
         assert_eq!(scene.camera, Some(there));
         Command::step_through(&scene, 0, there).unwrap().redo(&mut scene);
         assert_eq!(scene, before);
         scene.lenses[0].kind = SeeThrough { shown }.into();
+        // To another moment, and back to this one.
+        let mut later = scene.clone();
+        later.lenses[0] = Lens { time: vec![set_to(Moment::of_year(1650).unwrap())], ..portal };
+        later.moment = Moment::of_year(1900);
+        let started = later.clone();
+        Command::step_through(&later.clone(), 0, here).unwrap().redo(&mut later);
+        assert_eq!((later.camera, later.moment), (Some(there), Moment::of_year(1650)));
+        Command::step_through(&later.clone(), 0, there).unwrap().redo(&mut later);
+        assert_eq!((later.moment, &later.lenses[0].time), (started.moment, &started.lenses[0].time));
         assert_eq!(Command::step_through(&scene, 0, here), None, "a window is no door");
         assert_eq!(Command::step_through(&scene, 1, here), None);
     }

@@ -161,6 +161,16 @@ impl Units {
         set
     }
 
+    /// The units of which all objects that can hide something are flagged; one flag per object.
+    pub fn all_flagged(&self, model: &CityModel, flags: &[bool]) -> Set {
+        let left = flags.iter().zip(&model.objects).zip(&self.of_object);
+        let mut has_left = vec![false; self.len()];
+        left.filter(|((flag, object), _)| !**flag && !object.class.is_ground())
+            .for_each(|(_, unit)| has_left[*unit as usize] = true);
+        let all: Vec<bool> = has_left.into_iter().map(|has| !has).collect();
+        Set::of(&all)
+    }
+
     /// The objects of some units, one flag per object of the city; what others stand on is never among them.
     pub fn objects_of(&self, model: &CityModel, units: &Set) -> Vec<bool> {
         let each = self.of_object.iter().zip(&model.objects);

@@ -155,6 +155,7 @@ fn check(file: &Path) -> Result<(), Failed> {
             speed: Speed::Constant,
             camera: way.iter().copied().enumerate().map(key).map(|k| CameraKey { at: 2.5 * k.at, ..k }).collect(),
             changes: vec![],
+            moments: None,
         }),
         ..crate::studio::scene(veduta::view::Camera::looking(middle + DVec3::X, middle, 1.0), vec![])
     };

@@ -392,7 +392,11 @@ impl Plan {
 /// stays the same where only they are others.
 fn at_its_moment(scene: &Scene) -> Scene {
     let mut own = scene.clone();
-    (own.trajectories, own.time_s) = (Vec::new(), 0.0);
+    own.trajectories.clear();
+    // Time operators may go by the clock.
+    if own.lenses.iter().all(|lens| lens.time.is_empty()) {
+        own.time_s = 0.0;
+    }
     own.pois = scene.standing_pois();
     own.pois.retain(|poi| {
         scene.lenses.iter().filter(|lens| lens.enabled).any(|lens| {

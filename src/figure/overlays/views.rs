@@ -9,6 +9,7 @@ use crate::{
         BestView, Class, EffectUse, Lens, LensBody, LensKind, Parameter, Placement, Region,
         best_view::{LocalView, MapMode},
         chosen::Choice,
+        epoch::moment_after,
     },
     render::picture::{RenderError, Studio},
     scene::{Figure, PiecePlace, Poi, PoiPlace, Scene, Style, StyleLook},
@@ -162,6 +163,13 @@ pub fn local(
         LocalView::Camera { camera, .. } => *camera,
     };
     own.scene.camera = Some(camera);
+    let steps = scene.lenses.iter().find(|own| own.name == lens).map_or(&[][..], |own| &own.time);
+    if !steps.is_empty() {
+        own.scene.moment = moment_after(steps, scene.moment, scene.time_s).map_err(wrong)?;
+        if let Some(sun) = studio.sun_by_date(&own.scene)? {
+            own.scene.sun = sun;
+        }
+    }
     Ok(own)
 }
 

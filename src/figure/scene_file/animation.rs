@@ -7,6 +7,7 @@ use crate::{
         camera::{CAMERA, DEFAULT_FOV_DEG},
         check::{Checker, Fields, Place},
         content::CONTENT,
+        epoch::moment,
         forms::{Degrees, Form as _, Same, Word, numbers},
         keys::{Kind, Table, key},
         node::{Data, Node},
@@ -21,6 +22,7 @@ use crate::{
         Scene,
         animation::{Animation, Change, ChangeKey, MOST_FRAMES, Track},
     },
+    time::Moment,
     view::{
         Camera, Projection,
         path::{CameraKey, CameraPath, PathError, Speed},
@@ -29,6 +31,8 @@ use crate::{
 
 /// Latest time of a key, seconds.
 const LATEST_S: f64 = 1e6;
+/// How long moments go by where nothing else says it, seconds.
+const MOMENTS_S: f64 = 10.0;
 /// Pictures per second where none are given.
 const FPS: f64 = 30.0;
 /// What an animation can change, by the first word of the way to it.
@@ -107,6 +111,28 @@ const ANIMATION_ROWS: &[Row<Animation>] = &[
                 Data::list(animation.changes.iter().map(|change| row::written(CHANGE_ROWS, change, &still(), options)))
             })
         },
+    ),
+    Row::<Animation>::joint(
+        key(
+            "from",
+            Kind::Moment,
+            "none: the scene's moment stays",
+            "",
+            "The moment of the calendar that the first frame shows, in place of `[time] at`; with `until`.",
+            "\"1400\"",
+        ),
+        |animation, _| animation.moments.map(|[first, _]| Data::Text(first.written())),
+    ),
+    Row::<Animation>::joint(
+        key(
+            "until",
+            Kind::Moment,
+            "none",
+            "",
+            "The moment that the last frame shows; those between show moments evenly between. Without `frames` and keys it takes ten seconds.",
+            "\"2025\"",
+        ),
+        |animation, _| animation.moments.map(|[_, last]| Data::Text(last.written())),
     ),
 ];
 
@@ -235,7 +261,8 @@ fn is_place(path: &str) -> bool {
 }
 
 /// An animation of which nothing is said.
-const PLAIN: Animation = Animation { frames: 0, fps: FPS, speed: Speed::Keys, camera: Vec::new(), changes: Vec::new() };
+const PLAIN: Animation =
+    Animation { frames: 0, fps: FPS, speed: Speed::Keys, camera: Vec::new(), changes: Vec::new(), moments: None };
 
 /// A camera of which nothing is said yet.
 const NOWHERE: CameraKey = CameraKey {
@@ -263,6 +290,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, scene: &Scene) -> Option<Anima
         .into_iter()
         .filter_map(|(key, node)| change(reader, &fields.place.within(&key, node.line), node))
         .collect();
+    animation.moments = moments(reader, fields);
     if reader.checker.problems.len() > before {
         return None;
     }
@@ -273,7 +301,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, scene: &Scene) -> Option<Anima
     let last = animation.changes.iter().flat_map(|change| change.keys.iter().map(|key| key.at)).chain(last_camera);
     // What moves arrives, or goes round once.
     let arrivals = scene.trajectories.iter().map(|way| (way.end_s() - scene.time_s).clamp(0.0, LATEST_S));
-    let last = last.chain(arrivals);
+    let last = last.chain(arrivals).chain(animation.moments.map(|_| MOMENTS_S));
     let by_keys = (last.fold(0.0, f64::max) * animation.fps).round() + 1.0;
     if by_keys > f64::from(MOST_FRAMES) {
         let message = format!("is {by_keys} up to the last key; at most {MOST_FRAMES} would be right");
@@ -281,6 +309,18 @@ pub fn read(reader: &mut Reader, fields: &Fields, scene: &Scene) -> Option<Anima
     }
     animation.frames = by_keys as u32;
     Some(animation)
+}
+
+/// The moments that the first frame and the last one show.
+fn moments(reader: &mut Reader, fields: &Fields) -> Option<[Moment; 2]> {
+    let of = |key: &str| fields.node(key).and_then(|node| moment(node).ok());
+    for (key, other) in [("from", "until"), ("until", "from")] {
+        if fields.given(key) && !fields.given(other) {
+            let message = format!("is given without {other}: moments go from one to another");
+            reader.checker.note(&fields.place, key, fields.line(key), message);
+        }
+    }
+    Some([of("from")?, of("until")?])
 }
 
 fn elements<'a>(fields: &Fields<'a>, key: &str) -> Vec<(String, &'a Node)> {

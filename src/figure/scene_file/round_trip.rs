@@ -585,7 +585,8 @@ prop_compose! {
             tenths.push(tenth);
         }
         let speed = if constant { Speed::Constant } else { Speed::Keys };
-        (Animation { frames, fps, speed, camera, changes }, tenths)
+        let moments = Moment::of_year(i64::from(frames % 3000)).zip(Moment::of_year(3000)).filter(|_| frames % 2 == 0);
+        (Animation { frames, fps, speed, camera, changes, moments: moments.map(|(a, b)| [a, b]) }, tenths)
     }
 }
 
