@@ -29,6 +29,12 @@ fn holds(lifetime: Lifetime, at: Moment) -> bool {
     return at.hour == TIMELESS_HOUR || (!is_before(at, lifetime.begin) && is_before(at, lifetime.end));
 }
 
+// Whether it is there at no moment that may be shown: where the scene has none, all is there.
+fn is_never(lifetime: Lifetime) -> bool {
+    let is_apart = is_before(moment_in(LATEST), lifetime.begin) || !is_before(moment_in(EARLIEST), lifetime.end);
+    return is_apart && scene_moment().hour != TIMELESS_HOUR;
+}
+
 // Whether it is there at all moments that may be shown.
 fn is_always(lifetime: Lifetime) -> bool {
     return !is_before(moment_in(EARLIEST), lifetime.begin) && is_before(moment_in(LATEST), lifetime.end);

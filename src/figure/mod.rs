@@ -4,6 +4,7 @@ pub mod animation;
 pub mod file;
 pub mod furniture;
 pub mod legend;
+pub mod moments;
 pub mod overlays;
 pub mod paper;
 pub mod picture;
@@ -164,13 +165,16 @@ fn tell(picture: &mut Picture, scene: &Scene, request: &Request, overlays: &Over
 pub fn furniture_of(studio: &Studio, scene: &Scene, size: [u32; 2]) -> Result<Laid, RenderError> {
     let figure = &scene.figure;
     let places = [figure.legend, figure.scale_bar, figure.north_arrow];
-    if figure.title.is_none() && figure.caption.is_none() && !places.iter().any(|place| place.is_some()) {
+    let view = View::new(studio.camera(scene, size), size, &studio.extent())?;
+    let labels = moments::labels(studio, scene, &view)?;
+    let has_pieces = figure.title.is_some() || figure.caption.is_some() || places.iter().any(|place| place.is_some());
+    if !has_pieces && labels.is_empty() {
         return Ok(Laid::default());
     }
     let legends = match figure.legend.is_some() {
         true => legend::legends(scene, &studio.model, &studio.lenses_in_view(scene, size)?),
         false => Vec::new(),
     };
-    let view = View::new(studio.camera(scene, size), size, &studio.extent())?;
-    Ok(furniture::lay_out(figure, &legends, &view, &overlays::standing(studio, scene, &view)))
+    let standing = overlays::standing(studio, scene, &view);
+    Ok(furniture::lay_out(figure, &furniture::Contents { legends: &legends, moments: &labels }, &view, &standing))
 }

@@ -4,7 +4,7 @@
 //! view draws the chunks its frustum meets, near ones first. Block models, once small views ask for them, are chunks beside the others. Textured faces stand apart by texture, and those that
 //! overlap in exactly one plane by layer: one layer is drawn after the other.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::{collections::BTreeMap, ops::Range, sync::Arc};
 
 use bytemuck::Zeroable;
 use glam::{DVec3, IVec3, Vec3};
@@ -55,6 +55,8 @@ pub struct Chunk {
     pub is_around: bool,
     /// Whether it is plain ground that gives way to a deformation of the whole city: around it, and where it only fills gaps.
     pub gives_way: bool,
+    /// The objects that it is of, ascending, each once; plain ground is of none.
+    pub objects: Arc<[u32]>,
 }
 
 impl Chunk {
@@ -266,6 +268,8 @@ struct Run {
     details: u8,
     is_around: bool,
     gives_way: bool,
+    /// The tile's object; [`NONE`]: plain ground.
+    object: u32,
 }
 
 /// How corners become vertices.
@@ -289,17 +293,17 @@ impl Gathered {
         self.texcoords.push(texcoord);
     }
 
-    fn close_run(&mut self, bounds: Aabb, cell: u32, details: u8) {
+    fn close_run(&mut self, bounds: Aabb, cell: u32, details: u8, object: u32) {
         let end = self.weld.indices.len();
         if end > self.runs.last().map_or(0, |run| run.end) {
-            self.runs.push(Run { end, bounds, cell, details, is_around: false, gives_way: false });
+            self.runs.push(Run { end, bounds, cell, details, is_around: false, gives_way: false, object });
         }
     }
 
     /// A run of plain ground.
     fn close_ground(&mut self, bounds: Aabb, is_around: bool, is_filling: bool) {
         let before = self.runs.len();
-        self.close_run(bounds, NO_CELL, details_of(NO_CELL, Detail::Full));
+        self.close_run(bounds, NO_CELL, details_of(NO_CELL, Detail::Full), NONE);
         for run in &mut self.runs[before..] {
             (run.is_around, run.gives_way) = (is_around, is_around || is_filling);
         }
@@ -307,6 +311,15 @@ impl Gathered {
 
     /// Cuts the runs into chunks: where another cell begins, and where one has more than a chunk; a run longer than that is cut by triangles.
     fn chunks(&self) -> Vec<Chunk> {
+        let objects = |from: usize, to: usize| -> Arc<[u32]> {
+            let first = self.runs.partition_point(|run| run.end <= from);
+            let begins = |run: usize| run.checked_sub(1).map_or(0, |before| self.runs[before].end);
+            let own = (first..self.runs.len()).take_while(|&run| begins(run) < to);
+            let mut objects: Vec<u32> = own.map(|run| self.runs[run].object).filter(|object| *object != NONE).collect();
+            objects.sort_unstable();
+            objects.dedup();
+            objects.into()
+        };
         let position = |i: u32| {
             let vertex = &self.weld.vertices[i as usize];
             IVec3::from(vertex.origin).as_dvec3() + Vec3::from(vertex.position).as_dvec3()
@@ -322,6 +335,7 @@ impl Gathered {
             translucency: self.group.translucency,
             is_around,
             gives_way,
+            objects: objects(from, to),
         };
         let mut chunks: Vec<Chunk> = Vec::new();
         let (mut start, mut bounds, mut done, mut of) = (0, Aabb::EMPTY, 0, (NO_CELL, 0, false, false));
@@ -352,6 +366,11 @@ impl Gathered {
         }
         chunks
     }
+}
+
+/// The object that a tile is of.
+fn object_of(model: &CityModel, tile: &Tile) -> u32 {
+    model.geometries.get(tile.geometry as usize).map_or(NONE, |geometry| geometry.object)
 }
 
 /// The corner of a triangle that flat values come from: the first, in OpenGL the last.
@@ -393,7 +412,7 @@ impl CityBuffers {
             let look = Walls { apart: &apart, facades: &facades };
             gather_tile(shown.model, tile, look, &mut table, &mut plain, &mut textured);
             for gathered in plain.iter_mut().chain(textured.values_mut()) {
-                gathered.close_run(tile.bounds, cell, details);
+                gathered.close_run(tile.bounds, cell, details, object_of(shown.model, tile));
             }
         }
         let mut sections = Vec::new();
@@ -688,7 +707,7 @@ fn gather_blocks(
                     }
                 }
                 gathered.weld.end_tile();
-                gathered.close_run(tile.bounds, cell, details);
+                gathered.close_run(tile.bounds, cell, details, object_of(model, tile));
             }
         }
     }
@@ -753,7 +772,7 @@ impl Layer {
         }
     }
 
-    fn end_tile(&mut self, bounds: Aabb, cell: u32) {
+    fn end_tile(&mut self, bounds: Aabb, cell: u32, object: u32) {
         let Self { gathered, planes, owners, .. } = self;
         gathered.weld.end_tile();
         if gathered.group.images.is_none() {
@@ -764,7 +783,7 @@ impl Layer {
                 planes.push(plane);
             });
         }
-        gathered.close_run(bounds, cell, details_of(cell, Detail::Full));
+        gathered.close_run(bounds, cell, details_of(cell, Detail::Full), object);
     }
 }
 
@@ -812,7 +831,10 @@ fn gather_layers(
                 layer.triangle(number, c.group, plane, corners);
             }
         }
-        layers.iter_mut().flat_map(BTreeMap::values_mut).for_each(|layer| layer.end_tile(tile.bounds, cell));
+        layers
+            .iter_mut()
+            .flat_map(BTreeMap::values_mut)
+            .for_each(|layer| layer.end_tile(tile.bounds, cell, object_of(shown.model, tile)));
     }
     layers.into_iter().map(|layer| layer.into_values().collect()).collect()
 }

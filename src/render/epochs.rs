@@ -5,9 +5,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::{
     city::{
         CityModel,
-        lifetime::{Dating, Lifetimes},
+        lifetime::{Dating, Lifetime, Lifetimes},
     },
     lens::{Lens, Operator, epoch::TIMELESS},
+    render::hiding::Presence,
     scene::Scene,
     time::Moment,
 };
@@ -61,6 +62,22 @@ impl Epochs {
         moment
     }
 
+    /// Of each object whether it is there at the moments that show.
+    pub fn presence(&self, lifetimes: &Lifetimes) -> Vec<Presence> {
+        let Some([first, last]) = self.range else { return vec![Presence::Always; lifetimes.of.len()] };
+        let of = |lifetime: &Lifetime| {
+            let begins = lifetime.begin.unwrap_or(Moment::FIRST);
+            // Where no moment shows, all is there.
+            let is_apart = lifetime.is_never || begins > last || lifetime.end.is_some_and(|end| end <= first);
+            match lifetime.holds(Some(first)) && lifetime.holds(Some(last)) {
+                true => Presence::Always,
+                false if is_apart && self.moment.is_some() => Presence::Never,
+                false => Presence::Sometimes,
+            }
+        };
+        lifetimes.of.iter().map(of).collect()
+    }
+
     /// What effects read of objects, from its first word on: `lib/lifetime.wgsl` says how it lies. Then, for each operator, where its words
     /// begin. `lifetimes`: of the scene's own city, then of contents, as their objects follow each other.
     pub fn words(&self, lifetimes: &[Arc<Lifetimes>]) -> (Vec<u32>, Vec<u32>) {
@@ -77,7 +94,7 @@ impl Epochs {
             words.extend(&operator.words);
         }
         words[2] = words.len() as u32;
-        words.extend(crate::city::lifetime::Lifetime::ALWAYS.words());
+        words.extend(Lifetime::ALWAYS.words());
         words.extend(lifetimes.iter().flat_map(|lifetimes| &lifetimes.of).flat_map(|lifetime| lifetime.words()));
         (words, begins)
     }

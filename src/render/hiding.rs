@@ -3,6 +3,8 @@
 //! A pipeline that discards costs early depth tests, so only chunks that a hiding lens may reach are drawn by one
 //! (architecture, decision 3).
 
+use std::sync::Arc;
+
 use glam::DVec2;
 
 use crate::{
@@ -154,6 +156,19 @@ pub struct Hiding {
     by_material: bool,
     /// The lenses that hide something or show something else, ascending.
     pub lenses: Vec<u32>,
+    /// Which objects of the scene's own city come and go; `None`: none does.
+    presence: Option<Arc<[Presence]>>,
+}
+
+/// Whether an object is there at the moments that a scene shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// At all of them.
+    Always,
+    /// At some, or that is not known.
+    Sometimes,
+    /// At none.
+    Never,
 }
 
 impl Hiding {
@@ -182,8 +197,7 @@ impl Hiding {
             hiding.hidden.extend(own);
         }
         if operations.timed {
-            // Whatever is where, objects come and go.
-            hiding.hidden.push(Reach::Everywhere);
+            hiding.presence = Some(operations.presence.clone());
             hiding.lenses.extend(operations.epochs.iter().map(|e| e.lens).filter(|lens| is_active(Some(*lens))));
         }
         hiding.lenses.sort_unstable();
@@ -205,11 +219,30 @@ impl Hiding {
     pub fn clears(&self, chunk: &Chunk, view: &View) -> bool {
         (self.by_material && chunk.translucency == Translucency::All)
             || self.clear.iter().any(|clear| clear.holds(chunk, view))
+            || self.is_gone(chunk)
+    }
+
+    /// Whether no object of a chunk is there at any moment that shows.
+    fn is_gone(&self, chunk: &Chunk) -> bool {
+        let is_never = |object: &u32| self.presence_of(*object) == Presence::Never;
+        !chunk.objects.is_empty() && chunk.objects.iter().all(is_never)
+    }
+
+    /// Whether some object of a chunk comes and goes.
+    fn comes_and_goes(&self, chunk: &Chunk) -> bool {
+        self.presence.is_some() && chunk.objects.iter().any(|object| self.presence_of(*object) != Presence::Always)
+    }
+
+    fn presence_of(&self, object: u32) -> Presence {
+        let known = self.presence.as_ref().and_then(|presence| presence.get(object as usize));
+        known.copied().unwrap_or(Presence::Always)
     }
 
     /// Whether all of a chunk, of the scene's own city, is surely there and translucent.
     pub fn keeps_all_clear(&self, chunk: &Chunk, view: &View) -> bool {
-        self.clears(chunk, view) && !self.hidden.iter().any(|reach| reach.meets(&chunk.bounds, view))
+        self.clears(chunk, view)
+            && !self.comes_and_goes(chunk)
+            && !self.hidden.iter().any(|reach| reach.meets(&chunk.bounds, view))
     }
 
     /// Whether some fragment of a chunk may be translucent.
@@ -221,7 +254,9 @@ impl Hiding {
 
     /// Whether some fragment of a chunk may be hidden, or translucent.
     pub fn touches(&self, chunk: &Chunk, view: &View) -> bool {
-        self.hidden.iter().any(|reach| reach.meets(&chunk.bounds, view)) || self.may_clear(chunk, view)
+        self.hidden.iter().any(|reach| reach.meets(&chunk.bounds, view))
+            || self.may_clear(chunk, view)
+            || self.comes_and_goes(chunk)
     }
 }
 
@@ -296,7 +331,7 @@ mod tests {
             let hiding = hiding(&shape, terrain, &view);
             let bounds = Aabb { min: low, max: low + size.abs() };
             let cell = if has_terrain { NO_CELL } else { 0 };
-            let chunk = Chunk { range: 0..3, bounds, cell, details: 1, translucency: Translucency::None, is_around: false, gives_way: false };
+            let chunk = Chunk { range: 0..3, bounds, cell, details: 1, translucency: Translucency::None, is_around: false, gives_way: false, objects: Arc::from([]) };
             let volume = shape.volume().expect("a volume");
             let acts = terrain || !has_terrain;
             let corners = bounds.corners().into_iter();

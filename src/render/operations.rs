@@ -10,7 +10,7 @@ use crate::{
         effect::{default_of, in_floats, ramp},
         thematic::ThematicScale,
     },
-    render::{epochs::Epochs, palette, placed_region::Members},
+    render::{epochs::Epochs, hiding::Presence, palette, placed_region::Members},
     scene::sized::POINTS,
     shader::{
         self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
@@ -149,6 +149,8 @@ pub struct Operations {
     pub contents: Vec<ContentUse>,
     /// Whether objects come and go.
     pub timed: bool,
+    /// Which objects of the scene's own city that is.
+    pub presence: Arc<[Presence]>,
     /// What lenses do to the moment, bottom lens first.
     pub epochs: Vec<EpochUse>,
     /// Lenses whose bodies are drawn, and how.
@@ -226,6 +228,7 @@ impl Operations {
         if !self.timed {
             return;
         }
+        self.presence = time.lifetimes.first().map_or_else(Vec::new, |own| time.epochs.presence(own)).into();
         let (words, begins) = time.epochs.words(&time.lifetimes);
         self.object_values = words;
         let operators = time.epochs.operators.iter().zip(begins);

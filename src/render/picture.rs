@@ -231,6 +231,11 @@ impl Studio {
         })
     }
 
+    /// When the objects of cities are there, as far as that was asked for.
+    pub fn known_lifetimes(&self) -> &KnownLifetimes {
+        &self.lifetimes
+    }
+
     /// The city, and what is shown of it.
     pub(super) fn shown(&self) -> ShownCity<'_> {
         ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index, number: 0 }

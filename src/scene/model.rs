@@ -225,6 +225,8 @@ pub struct Figure {
     pub caption_at: PiecePlace,
     /// Where a scale bar stands; in perspective, where the length that it shows lies.
     pub scale_bar: PiecePlace,
+    /// Whether time lenses say which moment shows in them.
+    pub time_labels: bool,
     /// Where an arrow stands that points to the north.
     pub north_arrow: PiecePlace,
     /// Size of the text (its em); `None`: [`PAPER_TEXT`] where there is a `paper`; else by the size of the picture.
@@ -370,6 +372,7 @@ impl Default for Figure {
             caption: None,
             caption_at: PiecePlace::Auto,
             scale_bar: PiecePlace::None,
+            time_labels: true,
             north_arrow: PiecePlace::None,
             text: None,
             dpi: None,

@@ -93,6 +93,9 @@ fn exists(place: &str, arguments: &str) -> String {
     if is_always(lifetime) {{
         return true;
     }}
+    if is_never(lifetime) {{
+        return false;
+    }}
     return holds(lifetime, moment_at({arguments}));
 }}
 

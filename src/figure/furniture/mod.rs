@@ -20,7 +20,7 @@ pub(in crate::figure) mod section;
 mod signs;
 
 use crate::{
-    figure::legend::Legend,
+    figure::{legend::Legend, moments::MomentLabel},
     overlay::Rect,
     render::{
         furniture::{Furniture, Piece},
@@ -30,7 +30,7 @@ use crate::{
     view::View,
 };
 
-use card::{Line, Painter, Size};
+use card::{Content, Line, Painter, Size};
 use desk::{Area, Desk};
 
 /// The em of a picture 1280 × 720, pixels.
@@ -60,8 +60,18 @@ pub struct Laid {
     pub left_out: Vec<&'static str>,
 }
 
+/// What a figure says beside what its `[figure]` has.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Contents<'a> {
+    /// Its legends.
+    pub legends: &'a [Legend],
+    /// Labels of time lenses.
+    pub moments: &'a [MomentLabel],
+}
+
 /// Lays out what a figure asks for over the picture of a view. It leaves `standing` free, pixels: overlays with places of their own.
-pub fn lay_out(figure: &Figure, legends: &[Legend], view: &View, standing: &[Rect]) -> Laid {
+pub fn lay_out(figure: &Figure, contents: &Contents, view: &View, standing: &[Rect]) -> Laid {
+    let legends = contents.legends;
     let painter = Painter::new(em_px(figure, view.size));
     let (margin, gap) = (painter.px(1.2), painter.px(0.6));
     let size = view.size.map(|side| side as f32);
@@ -72,6 +82,7 @@ pub fn lay_out(figure: &Figure, legends: &[Legend], view: &View, standing: &[Rec
     layout.legend(legends, title + caption);
     layout.scale_bar(view);
     layout.north_arrow(view);
+    contents.moments.iter().for_each(|label| layout.moment(label));
     let furniture = Furniture { pieces: layout.painter.pieces };
     let taken = cards(&furniture).into_iter().chain(layout.bare.iter().map(Area::rect)).collect();
     Laid { furniture, taken, left_out: layout.left_out }
@@ -114,6 +125,28 @@ impl Layout<'_> {
         self.put("caption", place, Anchor::BottomLeft, &rooms, |painter, room| {
             painter.paragraph(caption, style, room, 6)
         })
+    }
+
+    /// The label of a time lens, as near as there is room to where it should be.
+    fn moment(&mut self, label: &MomentLabel) {
+        let [w, h] = self.size;
+        let style = TextStyle { size_px: self.painter.em, weight: Weight::SemiBold, tabular: true };
+        let room = Size { width: w - 2.0 * self.margin, height: h - 2.0 * self.margin };
+        let mut lines = self.painter.paragraph(&label.text, style, room, 1);
+        for line in &mut lines {
+            let Content::Texts(texts) = &line.content else { continue };
+            let text = texts.iter().map(|(text, ..)| text.as_str()).collect();
+            line.width += self.painter.swatch() + self.painter.px(0.6);
+            line.content = Content::Swatch { color: label.color, is_ring: true, text, style, ink: card::INK };
+        }
+        let Some(size) = self.painter.card_size(&lines, room) else { return };
+        let wanted = [label.at.x as f32 - size[0] / 2.0, label.at.y as f32 - size[1] / 2.0].map(f32::round);
+        let wanted =
+            [0, 1].map(|i| wanted[i].clamp(self.margin, (self.size[i] - self.margin - size[i]).max(self.margin)));
+        let Some(low) = self.desk.nearest(wanted, size) else { return };
+        let area = Area::new(low, size);
+        self.painter.lines(&lines, area);
+        self.desk.take(area);
     }
 
     /// The legends, where title and caption are so high together.

@@ -23,7 +23,7 @@ fn view(size: [u32; 2]) -> View {
 }
 
 fn laid(figure: &Figure, legends: &[Legend], size: [u32; 2]) -> Furniture {
-    lay_out(figure, legends, &view(size), &[]).furniture
+    lay_out(figure, &Contents { legends, ..Contents::default() }, &view(size), &[]).furniture
 }
 
 /// A legend of so many categories, `other` and `no data`.
@@ -237,7 +237,7 @@ fn a_scale_bar_is_as_long_as_it_says() {
                 [flat, Camera { projection: Projection::Perspective { fov_y: 0.3 + 0.2 * i as f64 }, ..camera }]
             {
                 let view = View::new(camera, size, &Aabb::EMPTY).unwrap();
-                let (bar, metres) = scale(&lay_out(&asked, &[], &view, &[]).furniture);
+                let (bar, metres) = scale(&lay_out(&asked, &Contents::default(), &view, &[]).furniture);
                 let across = view.basis.right;
                 assert!(across.z.abs() < 1e-12, "level");
                 let [from, to] = [-0.5, 0.5].map(|share| view.pixel(target + share * metres * across).unwrap());
@@ -265,7 +265,7 @@ fn a_bar_is_true_on_the_ground_in_a_picture_that_is_turned() {
         let camera = Camera::looking(DVec3::new(0.0, -300.0, 250.0), DVec3::ZERO, 1.0);
         let camera = Camera { up, projection: Projection::Orthographic { height_m: 400.0 }, ..camera };
         let view = View::new(camera, [1280, 720], &Aabb::EMPTY).unwrap();
-        let (bar, metres) = scale(&lay_out(&asked, &[], &view, &[]).furniture);
+        let (bar, metres) = scale(&lay_out(&asked, &Contents::default(), &view, &[]).furniture);
         // The level way that goes across the picture, found by going round.
         let ways = (0..36_000).map(|i| {
             let turn = f64::from(i) * std::f64::consts::PI / 36_000.0;
@@ -282,7 +282,7 @@ fn a_bar_is_true_on_the_ground_in_a_picture_that_is_turned() {
 fn a_bar_elsewhere_in_a_perspective_is_true_there() {
     let camera = Camera::looking(DVec3::new(0.0, -400.0, 200.0), DVec3::ZERO, 0.8);
     let view = View::new(camera, [1280, 720], &Aabb::EMPTY).unwrap();
-    let bar = |place| lay_out(&Figure { scale_bar: place, ..Figure::default() }, &[], &view, &[]);
+    let bar = |place| lay_out(&Figure { scale_bar: place, ..Figure::default() }, &Contents::default(), &view, &[]);
     let pixel_m = |laid: &Laid| {
         let (bar, metres) = scale(&laid.furniture);
         metres / f64::from(bar.high[0] - bar.low[0])
@@ -296,7 +296,12 @@ fn a_bar_elsewhere_in_a_perspective_is_true_there() {
     // There is no ground in the sky.
     let level = Camera::looking(DVec3::new(0.0, -400.0, 20.0), DVec3::ZERO, 0.8);
     let view = View::new(level, [1280, 720], &Aabb::EMPTY).unwrap();
-    let sky = lay_out(&Figure { scale_bar: PiecePlace::At([0.5, 0.1]), ..Figure::default() }, &[], &view, &[]);
+    let sky = lay_out(
+        &Figure { scale_bar: PiecePlace::At([0.5, 0.1]), ..Figure::default() },
+        &Contents::default(),
+        &view,
+        &[],
+    );
     assert_eq!((sky.left_out, sky.furniture.is_empty()), (vec!["scale bar"], true));
 }
 
@@ -314,7 +319,7 @@ fn an_arrow_points_to_the_north_as_the_camera_sees_it() {
         let projection =
             fov_y.map_or(Projection::Orthographic { height_m: 300.0 }, |fov_y| Projection::Perspective { fov_y });
         let view = View::new(Camera { projection, ..camera }, [1280, 720], &Aabb::EMPTY).unwrap();
-        let laid = lay_out(&asked, &[], &view, &[]);
+        let laid = lay_out(&asked, &Contents::default(), &view, &[]);
         let card = cards(&laid.furniture)[0];
         let middle = glam::Vec2::from([0, 1].map(|axis| 0.5 * (card.low[axis] + card.high[axis])));
         let hand = laid.furniture.pieces.iter().find_map(|piece| match piece {

@@ -203,6 +203,7 @@ fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
     own.figure = Figure {
         legend: PiecePlace::None,
         scale_bar: PiecePlace::None,
+        time_labels: false,
         north_arrow: PiecePlace::None,
         title: None,
         caption: None,

@@ -12,7 +12,6 @@ use crate::{
     view::MAX_SIZE,
 };
 
-//////FIG
 /// The words for places of pieces that may be nowhere, and of those that have a place.
 const PLACES: [&str; 10] = {
     let mut words = ["none", "auto", "", "", "", "", "", "", "", ""];
@@ -148,6 +147,18 @@ pub const FIGURE_ROWS: &[Row<Figure>] = &[
         ),
         Same,
         |figure: Figure| figure.scale_bar
+    ),
+    field!(
+        key(
+            "time_labels",
+            Kind::Boolean,
+            "true",
+            "",
+            "Whether lenses that show a moment, and have a body, say which: above their middles, and where they overlap.",
+            "false",
+        ),
+        Same,
+        |figure: Figure| figure.time_labels
     ),
     field!(
         key(

@@ -146,6 +146,7 @@ impl Asked {
             translucency: Translucency::None,
             is_around: false,
             gives_way: false,
+            objects: [0].into(),
         }];
         let sections = vec![SectionFacts { kind: SectionKind::Plain, is_smooth: false, is_read: false }];
         let facts = CityFacts {
