@@ -3,7 +3,7 @@
 use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 use crate::{
-    app::{drawn::Figure, new_lens::NewLens},
+    app::{drawn::Figure, new_lens::NewLens, timeline::Step},
     view::navigate::Axis,
 };
 
@@ -70,6 +70,8 @@ pub enum Action {
     ToggleCost,
     /// The figure as it will be.
     TogglePreview,
+    /// Plays through time, or goes a step of it.
+    Time(Step),
     /// Light or dark.
     ToggleTheme,
     /// All of these.
@@ -154,6 +156,7 @@ pub const ROWS: &[Row] = &[
     row(Action::AddLens(NewLens::XRay), Menu::Lens, "Add x-ray lens", None),
     row(Action::AddLens(NewLens::Eraser), Menu::Lens, "Add eraser lens", None),
     row(Action::AddLens(NewLens::Content), Menu::Lens, "Add content lens (flat)", None),
+    row(Action::AddLens(NewLens::Time), Menu::Lens, "Add time lens", plain(Key::Y)),
     row(Action::AddLens(NewLens::Occlusion), Menu::Lens, "See the object through what hides it", plain(Key::R)),
     row(Action::AddLens(NewLens::Deformation), Menu::Lens, "Add deformation lens", None),
     row(Action::AddLens(NewLens::Lower), Menu::Lens, "Lower what hides the object", None),
@@ -185,6 +188,9 @@ pub const ROWS: &[Row] = &[
     row(Action::ToggleWalk, Menu::View, "Walk on the ground, or fly", plain(Key::G)),
     row(Action::TogglePreview, Menu::View, "Figure as it will be", plain(Key::P)),
     row(Action::ToggleCost, Menu::View, "What it costs", plain(Key::T)),
+    row(Action::Time(Step::Play), Menu::View, "Play through time, or pause", plain(Key::Space)),
+    row(Action::Time(Step::Back), Menu::View, "Step back in time", plain(Key::Comma)),
+    row(Action::Time(Step::On), Menu::View, "Step on in time", plain(Key::Period)),
     row(Action::ToggleTheme, Menu::View, "Light or dark", None),
     row(Action::Shortcuts, Menu::Help, "Keys and mouse", plain(Key::F1)),
 ];
@@ -206,6 +212,7 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("W A S D, Q E", "Go forward, left, back, right, down and up; faster with Shift"),
     ("Arrows, Shift arrows", "Orbit around what the eye looks at; move along"),
     ("+ and -", "Come nearer to it, and go away"),
+    ("Drag the timeline", "Go through time"),
     ("Drop files", "Open them; effects (*.wgsl) are added, and read again when they change"),
 ];
 

@@ -31,6 +31,7 @@ pub mod render_thread;
 mod spots;
 pub mod state;
 mod theme;
+pub mod timeline;
 mod unsaved;
 pub mod user_effects;
 pub mod window;

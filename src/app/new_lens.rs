@@ -18,6 +18,8 @@ pub enum NewLens {
     Eraser,
     /// Shows the city pressed flat in it.
     Content,
+    /// Shows another moment in it.
+    Time,
     /// Draws what hides an object as x-ray.
     Occlusion,
     /// Moves what is in it.
@@ -55,6 +57,7 @@ impl NewLens {
             Self::XRay => "x-ray",
             Self::Eraser => "eraser",
             Self::Content => "flat",
+            Self::Time => "time",
             Self::Occlusion => "revealed",
             Self::Deformation => "raised",
             Self::Lower => "lowered",
@@ -88,6 +91,7 @@ impl NewLens {
             Self::XRay => format!("kind = \"color\", {shape}, effects = [\"x-ray\"]"),
             Self::Eraser => format!("kind = \"color\", {shape}, effects = [\"eraser\"]"),
             Self::Content => format!("kind = \"content\", {shape}, content = {{ derive = \"flat\" }}"),
+            Self::Time => format!("kind = \"time\", {upright}, time = {}", other_time(document.scene())),
             Self::Occlusion => format!("kind = \"occlusion\", poi = {poi}, render = \"x-ray\""),
             Self::Deformation => {
                 format!("kind = \"deformation\", {upright}, deform = [{{ kind = \"scale\", factors = [1, 1, 2] }}]")
@@ -103,6 +107,14 @@ impl NewLens {
         let after = draft.scene().clone();
         document.edit(format!("add lens {name}"), |scene| *scene = after);
         Ok(index)
+    }
+}
+
+/// Time operators for a new lens: fifty years before what the scene shows; where it shows all times, 1900.
+fn other_time(scene: &Scene) -> &'static str {
+    match scene.moment {
+        Some(_) => "[{ op = \"shift\", by = \"-50 years\" }]",
+        None => "[{ op = \"set\", at = \"1900\" }]",
     }
 }
 

@@ -12,6 +12,7 @@ use crate::{
         finder::Finder,
         properties::edits::Drafts,
         render_thread::{Draw, Frame, Opened, RenderThread},
+        timeline::Timeline,
         unsaved::{LeftBehind, Unsaved},
     },
     scene::{CitySpec, Scene},
@@ -103,6 +104,8 @@ pub struct Window {
     /// The field of view of the last perspective, radians.
     pub(super) fov_y: f64,
     pub(super) drafts: Drafts,
+    /// The timeline.
+    pub timeline: Timeline,
 }
 
 /// A lens that is given another name in the list.

@@ -22,6 +22,7 @@ use crate::{
         render_thread::{Draw, Frame, Notify, RenderThread, Reply},
         state::{Chosen, Message, Window},
         theme,
+        timeline::Timeline,
         unsaved::Unsaved,
         user_effects,
     },
@@ -118,6 +119,7 @@ impl Window {
             allow_outside: start.allow_outside,
             allows_outside: start.allow_outside,
             drafts: properties::edits::Drafts::default(),
+            timeline: Timeline::default(),
         };
         window.render_thread.watch(&start.effects, true);
         let files = if start.files.is_empty() { vec![PathBuf::from(BUILTIN)] } else { start.files.clone() };
@@ -440,6 +442,7 @@ impl Window {
                 }
             });
         });
+        self.show_timeline(ui);
         egui::CentralPanel::default().frame(egui::Frame::NONE).show(ui, |ui| self.draw_canvas(ui));
         // What is held is an edit when it is let go.
         if self.document.is_live() && !context.input(|input| input.pointer.any_down()) {

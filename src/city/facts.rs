@@ -7,9 +7,9 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 
 use crate::{
     city::{
-        join::JoinFacts,
         lifetime::{Dating, Lifetimes},
         model::{Attribute, CityModel, Geometry, Lod, NONE, StringId, Value},
+        side_table::JoinFacts,
     },
     geom::Aabb,
     time::Granularity,

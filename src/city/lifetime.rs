@@ -5,7 +5,7 @@
 //! without one of both is open at that end; without both it is undated, if it has no parent that is not.
 
 use crate::{
-    city::{CityModel, StringId, Value},
+    city::model::{CityModel, StringId, Value},
     time::{Granularity, Interval, Moment},
 };
 

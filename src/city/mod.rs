@@ -23,6 +23,7 @@ pub mod model;
 pub mod obj;
 pub mod place;
 pub mod shown;
+pub mod side_table;
 pub mod spatial;
 mod strings;
 pub mod sun;

@@ -21,7 +21,7 @@ use glam::{DVec3, IVec3};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::{
-    city::{join::JoinFacts, kept_measures::Measured, strings::Strings, warning::Warnings},
+    city::{kept_measures::Measured, side_table::JoinFacts, strings::Strings, warning::Warnings},
     geom::{Aabb, plane::Plane},
 };
 

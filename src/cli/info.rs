@@ -12,8 +12,8 @@ use crate::{
     city::{
         CityModel,
         facts::{self, Facts, TimeFacts},
-        join::Join,
         shown::shown_geometries,
+        side_table::Join,
         spatial::SpatialIndex,
     },
     cli::{

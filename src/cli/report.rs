@@ -395,7 +395,7 @@ mod tests {
             objects: ObjectFacts { total: 4, by_type: vec![], list: None },
             lods: vec![("2.2".into(), Default::default())],
             attributes: vec![("x".repeat(300), attribute)],
-            joins: vec![crate::city::join::JoinFacts {
+            joins: vec![crate::city::side_table::JoinFacts {
                 file: "z/".repeat(120).into(),
                 key: "\u{1b}k".repeat(90),
                 attribute: Some("n".repeat(300)),

@@ -7,6 +7,7 @@ use crate::{
         epoch::{moment_after, set_to},
     },
     scene::model::Scene,
+    time::Moment,
     view::Camera,
 };
 
@@ -38,6 +39,11 @@ impl Command {
     /// Moves the eye; several such moves in a row are one edit.
     pub fn look(scene: &Scene, camera: Camera) -> Self {
         Self { goes_on: true, ..Self::of("move camera", scene, |s| s.camera = Some(camera)) }
+    }
+
+    /// Shows another moment, or all times; several in a row are one edit.
+    pub fn show_moment(scene: &Scene, moment: Option<Moment>) -> Self {
+        Self { goes_on: true, ..Self::of("move through time", scene, |s| s.moment = moment) }
     }
 
     /// It begins a row of its own, whatever went before.
@@ -190,10 +196,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::{
-        lens::kind::{Portal, SeeThrough},
-        time::Moment,
-    };
+    use crate::lens::kind::{Portal, SeeThrough};
 
     fn resized(scene: &Scene, width: u32) -> Command {
         Command::of(format!("width {width}"), scene, |s| s.figure.size[0] = width)

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    city::{Materials, join::Join, lifetime::Dating, load::Up},
+    city::{Materials, lifetime::Dating, load::Up, side_table::Join},
     lens::{
         EffectUse, Lens,
         best_view::{Background, BaseStyle, StyleLook},

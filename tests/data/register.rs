@@ -7,9 +7,9 @@ use serde_json::Value;
 use veduta::{
     city::{
         facts::TimeFacts,
-        join::Join,
         lifetime::{Dating, Lifetimes, Undated},
         load::{LoadOptions, Quiet, load},
+        side_table::Join,
     },
     time::{Granularity, Interval},
 };

@@ -52,7 +52,7 @@ impl<'a> Takes<'a> {
             Kind::Word { now, .. } => Self::Words(now.to_vec()),
             Kind::WordOrTable(words, _) | Kind::WordOrPlace(words) => Self::Words(words.to_vec()),
             Kind::Color => Self::Color,
-            Kind::Text | Kind::Lod | Kind::Names => Self::Text,
+            Kind::Text | Kind::Lod | Kind::Names | Kind::Moment => Self::Text,
             Kind::Rendering => Self::Words(ROWS.iter().map(|row| row.word).collect()),
             Kind::Point
             | Kind::Lengths

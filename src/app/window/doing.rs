@@ -41,6 +41,7 @@ impl Window {
             Action::HideObject | Action::IsolateObject => self.chosen.object.is_some(),
             Action::FrameChosen => self.chosen != Chosen::default(),
             Action::CopyPicture => self.frame.as_ref().is_some_and(|frame| !frame.rgba.is_empty()),
+            Action::Time(_) => self.has_timeline(),
             Action::AddLens(kind) => self.city.is_some() && (!kind.needs_object() || self.chosen.object.is_some()),
             Action::Quit | Action::Open | Action::OpenBuiltin | Action::Shortcuts | Action::ToggleTheme => true,
             _ => self.city.is_some(),
@@ -77,6 +78,7 @@ impl Window {
                     Err(error) => self.fail(error),
                 }
             }
+            Action::Time(step) => self.step_time(step),
             Action::Draw(figure) => self.begin_drawing(figure),
             Action::ToggleWalk => {
                 self.walks ^= true;

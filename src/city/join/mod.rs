@@ -2,52 +2,14 @@
 
 mod table;
 
-use std::path::{Path, PathBuf};
-
 use rustc_hash::FxHashMap;
-use serde::Serialize;
 
 use crate::city::{
-    Attribute, CityModel, StringId, Value,
     join::table::{Cell, Table},
-    load::{LoadError, input},
+    load::{error::LoadError, input},
+    model::{Attribute, CityModel, StringId, Value},
+    side_table::{Join, JoinFacts},
 };
-
-/// A side table of a city.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Join {
-    /// The file: CSV, or GeoJSON, whose properties count.
-    pub file: PathBuf,
-    /// Its column, or property, that says of which object a row is; empty: the first, of GeoJSON `id`.
-    pub key: String,
-    /// The attribute of objects that has the same; `None`: their id.
-    pub attribute: Option<String>,
-}
-
-/// What was joined.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct JoinFacts {
-    /// The file as it was named.
-    pub file: PathBuf,
-    /// The column that says of which object a row is.
-    pub key: String,
-    /// The attribute of objects that has the same; `None`: their id.
-    pub attribute: Option<String>,
-    /// Rows of the table.
-    pub rows: u64,
-    /// Rows of which some object is.
-    pub joined: u64,
-    /// Objects that got attributes.
-    pub objects: u64,
-    /// Rows of no object.
-    pub without_object: u64,
-    /// The keys of the first of them, at most eight.
-    pub first_without_object: Vec<String>,
-    /// Rows that repeat the key of one before: they do not count.
-    pub repeated: u64,
-    /// Names of the attributes that came, in the order of the table.
-    pub attributes: Vec<String>,
-}
 
 /// Keys of rows without an object that are named.
 const NAMED: usize = 8;
@@ -183,11 +145,6 @@ impl Owners for FxHashMap<String, Vec<u32>> {
 /// See [`CityModel::join`].
 pub fn join_all(model: &mut CityModel, joins: &[Join]) -> Result<(), LoadError> {
     joins.iter().try_for_each(|join| model.join(join))
-}
-
-/// What is read beside the city.
-pub fn files(joins: &[Join]) -> impl Iterator<Item = &Path> {
-    joins.iter().map(|join| join.file.as_path())
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::{borrow::Cow, path::Path};
 use csv::ByteRecord;
 use serde_json::{Map, Value};
 
-use crate::city::load::LoadError;
+use crate::city::load::error::LoadError;
 
 /// A cell that says something.
 pub enum Cell<'a> {

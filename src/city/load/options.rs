@@ -9,7 +9,7 @@ use std::{
 
 use glam::DVec3;
 
-use crate::city::{join::Join, model::Materials};
+use crate::city::{model::Materials, side_table::Join};
 
 /// Names of the files of a folder by their lower-case spelling; of several the first by name.
 type Listing = Arc<HashMap<String, OsString>>;

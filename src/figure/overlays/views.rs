@@ -163,14 +163,22 @@ pub fn local(
         LocalView::Camera { camera, .. } => *camera,
     };
     own.scene.camera = Some(camera);
-    let steps = scene.lenses.iter().find(|own| own.name == lens).map_or(&[][..], |own| &own.time);
-    if !steps.is_empty() {
-        own.scene.moment = moment_after(steps, scene.moment, scene.time_s).map_err(wrong)?;
-        if let Some(sun) = studio.sun_by_date(&own.scene)? {
-            own.scene.sun = sun;
-        }
-    }
+    show_moment(studio, scene, lens, &mut own.scene)?;
     Ok(own)
+}
+
+/// Has the view of a lens show the moment that the lens makes of the scene's, under the sun of then.
+fn show_moment(studio: &Studio, scene: &Scene, lens: &str, own: &mut Scene) -> Result<(), RenderError> {
+    let steps = scene.lenses.iter().find(|own| own.name == lens).map_or(&[][..], |own| &own.time);
+    if steps.is_empty() {
+        return Ok(());
+    }
+    let then = moment_after(steps, scene.moment, scene.time_s);
+    own.moment = then.map_err(|message| RenderError::Scene(format!("lens \"{lens}\": {message}")))?;
+    if let Some(sun) = studio.sun_by_date(own)? {
+        own.sun = sun;
+    }
+    Ok(())
 }
 
 /// The camera from where an object is seen best, or from a direction that is `given`: all of it fills the picture, however long it is. `ball`:

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::{
-    city::join::Join,
+    city::side_table::Join,
     figure::scene_file::{
         check::lod,
         epoch::moment,

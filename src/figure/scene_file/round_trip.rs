@@ -7,8 +7,8 @@ use super::{tests::read_text, *};
 use crate::{
     city::{
         derived::{Derive, Form, Height},
-        join::Join,
         lifetime::{Dating, Undated},
+        side_table::Join,
     },
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
