@@ -107,7 +107,9 @@ fn check(arguments: &Arguments) -> Result<(), Failure> {
         )));
     }
     if !is_full && arguments.timetable.is_some() {
-        return Err(Failure::usage("--timetable: only a city in full has trams and boats; --detail full would be right"));
+        return Err(Failure::usage(
+            "--timetable: only a city in full has trams and boats; --detail full would be right",
+        ));
     }
     Ok(())
 }

@@ -134,7 +134,7 @@ fn kind_of(plan: &Plan, cell: Cell, era: &Era, corners: &[P2; 4], random: &mut R
             (5 * villas, Kind::Villas),
             (12, Kind::Terraces),
             (4, Kind::Park),
-            (4, Kind::Towers),
+            (3, Kind::Towers),
         ]),
         251..=520 => random.pick(&[
             (30, Kind::Perimeter),
@@ -151,7 +151,7 @@ fn kind_of(plan: &Plan, cell: Cell, era: &Era, corners: &[P2; 4], random: &mut R
             (22, Kind::Slabs),
             (10 * villas, Kind::Villas),
             (6 * halls, Kind::Halls),
-            (7, Kind::Towers),
+            (5, Kind::Towers),
             (5, Kind::Park),
         ]),
         _ => random.pick(&[
@@ -180,7 +180,7 @@ impl Builder<'_> {
     fn build(&mut self) {
         match self.kind {
             Kind::Close => {
-                self.rows([2, 38], [5_000, 7_500], true);
+                self.rows([1, 38], [5_000, 7_500], true);
             }
             Kind::OldTown => self.old_town(),
             Kind::Perimeter => {
@@ -237,7 +237,14 @@ impl Builder<'_> {
             let width = steps(self.random.range(least, most));
             let width = if left - width < steps(least) * 4 / 5 { left } else { width };
             let years = self.era.years(&mut self.random);
-            let house = style::town_house(strip.house(at, 0), [width, strip.depth], self.kind, &self.era, &years, &mut self.random);
+            let house = style::town_house(
+                strip.house(at, 0),
+                [width, strip.depth],
+                self.kind,
+                &self.era,
+                &years,
+                &mut self.random,
+            );
             self.add(side, place, house, &years);
             at += width;
             place += 1;
@@ -247,10 +254,11 @@ impl Builder<'_> {
     fn old_town(&mut self) {
         let depth = steps(self.random.range(8_500, 10_500));
         let has_alleys = self.random.chance(40);
-        let strips = self.rows([2, depth], [4_500, 7_500], has_alleys);
+        let strips = self.rows([1, depth], [4_500, 7_500], has_alleys);
         // Sheds and back houses in the yard.
         let Some(first) = strips.first() else { return };
-        let side = (0..4).find(|k| Frame::towards(self.corners[*k], self.corners[(k + 1) % 4]) == first.frame).unwrap_or(0);
+        let side =
+            (0..4).find(|k| Frame::towards(self.corners[*k], self.corners[(k + 1) % 4]) == first.frame).unwrap_or(0);
         let front = first.front + first.depth + steps(3_000);
         let Some(row) = Strip::along(&self.corners, side, front, steps(5_500), &strips) else { return };
         let mut at = steps(1_500);
@@ -339,7 +347,11 @@ impl Builder<'_> {
                 inset: wing.max(0),
                 storey: 3_700,
                 eaves: storeys * 3_700,
-                function: this.random.pick(&[(45, Function::Public), (35, Function::Office), (20, Function::Commercial)]),
+                function: this.random.pick(&[
+                    (45, Function::Public),
+                    (35, Function::Office),
+                    (20, Function::Commercial),
+                ]),
                 ..House::at(frame)
             };
             (house, years)
@@ -400,7 +412,11 @@ impl Builder<'_> {
                 rise: if has_podium { storeys * 3_300 - low } else { 0 },
                 inset: (width.min(depth) - steps(17_000)).clamp(steps(2_000), steps(7_000)).min(width.min(depth) / 3),
                 storey: 3_300,
-                function: this.random.pick(&[(50, Function::Office), (35, Function::Residential), (15, Function::Commercial)]),
+                function: this.random.pick(&[
+                    (50, Function::Office),
+                    (35, Function::Residential),
+                    (15, Function::Commercial),
+                ]),
                 ..House::at(frame)
             };
             let mut years = this.era.years(&mut this.random);

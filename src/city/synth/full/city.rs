@@ -4,9 +4,11 @@ use std::io::Result;
 
 use crate::city::synth::full::{
     blocks::{Block, Kind, Lot},
+    furniture,
     house::House,
     interior, landmark, names,
     object::{Geometry, Object},
+    parcels,
     plan::{Cell, Cells, Plan, Street},
     shell::Shell,
     streets, transport,
@@ -90,7 +92,11 @@ impl Stream<'_, '_> {
         if upright == Street::River {
             self.alone(road(format!("quay{j}"), streets::quays(plan, j), name))?;
             let river = streets::river(plan, j);
-            self.alone(Object::new(format!("river{j}"), "WaterBody").text("class", "river").with(Geometry::Surfaces("2", river.water)))?;
+            self.alone(
+                Object::new(format!("river{j}"), "WaterBody")
+                    .text("class", "river")
+                    .with(Geometry::Surfaces("2", river.water)),
+            )?;
             self.alone(Object::new(format!("bank{j}"), "TINRelief").with(surfaces_or_terrain(river.banks, true)))?;
             if transport::has_bridge(j) {
                 let mut objects = transport::bridge(plan, j);
@@ -113,6 +119,8 @@ impl Stream<'_, '_> {
     /// The buildings of a block that have a place in the city, with what stood there before, and the trees between.
     fn buildings(&mut self, block: Block) -> Result<()> {
         self.landmarks(&block)?;
+        let numbers = [self.standing + 1, self.plan.options.buildings];
+        parcels::gardens(self.plan, &block, numbers).into_iter().try_for_each(|garden| self.alone(garden))?;
         for lot in &block.lots {
             if self.standing >= self.plan.options.buildings {
                 break;
@@ -142,9 +150,26 @@ impl Stream<'_, '_> {
             }),
             _ => None,
         };
-        let Some(family) = family else { return Ok(()) };
+        if let Some(family) = family {
+            self.standing += 1;
+            (self.receive)(&family, self.standing)?;
+        }
+        if block.kind == Kind::Market {
+            furniture::market(self.plan, block).into_iter().try_for_each(|object| self.alone(object))?;
+        }
+        self.gate(block.cell)
+    }
+
+    /// What is left of the old wall, where it was.
+    fn gate(&mut self, cell: Cell) -> Result<()> {
+        let Some(tower) = furniture::gate(self.plan, cell) else { return Ok(()) };
+        if self.standing >= self.plan.options.buildings {
+            return Ok(());
+        }
         self.standing += 1;
-        (self.receive)(&family, self.standing)
+        let random = &mut names::register_of(self.plan, self.standing);
+        let building = Object::new(format!("b{}", self.standing), "Building").text("name", "Old Gate");
+        self.alone(shells(names::register(building, &tower, random), &tower))
     }
 
     /// A house, and what stood there before, each an object with what belongs to it.

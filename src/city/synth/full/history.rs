@@ -44,7 +44,8 @@ impl Era {
         let out = (1000 * (ring - plan.core) / (plan.last - plan.core).max(1)).clamp(0, 1000);
         // The town filled its walls for long, then grew ever faster.
         const GROWTH: [[i64; 2]; 6] = [[0, 1700], [200, 1845], [400, 1900], [600, 1938], [800, 1970], [1000, 2008]];
-        let [from, to] = GROWTH.windows(2).map(|w| [w[0], w[1]]).find(|[_, to]| out <= to[0]).unwrap_or([GROWTH[4], GROWTH[5]]);
+        let [from, to] =
+            GROWTH.windows(2).map(|w| [w[0], w[1]]).find(|[_, to]| out <= to[0]).unwrap_or([GROWTH[4], GROWTH[5]]);
         let first = from[1] + (to[1] - from[1]) * (out - from[0]) / (to[0] - from[0]) + random.range(-14, 8);
         Self { first, out, fire: None }
     }
@@ -54,10 +55,15 @@ impl Era {
         let mut years = vec![(self.first + random.range(0, 22)).min(LAST)];
         loop {
             let last = years[years.len() - 1];
-            // Old houses that have lasted so long last longer; what was built in haste does not.
-            let life = if last < 1850 { random.range(70, 420) } else { random.range(45, 400) };
+            // Some houses last for good, the more the older they are.
+            let stays = match last {
+                ..=1599 => 26,
+                1600..=1849 => 32,
+                _ => 20,
+            };
+            let life = if random.chance(stays) { LAST } else { random.range(60, 420) };
             let mut next = last + life;
-            if let Some(fire) = self.fire.filter(|fire| last < *fire && next > *fire) {
+            if let Some(fire) = self.fire.filter(|fire| last < *fire && next >= *fire) {
                 next = fire + random.range(1, 7);
             }
             if next > LAST - 3 {

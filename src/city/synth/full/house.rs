@@ -193,6 +193,9 @@ impl House {
 
     /// Chimneys and dormers.
     pub fn on_the_roof(&self) -> Vec<Shell> {
+        if self.function == Function::Industrial {
+            return Vec::new();
+        }
         let [w, d] = [self.width, self.depth];
         let top = self.eaves + self.rise;
         let mut boxes: Vec<[P3; 2]> = Vec::new();
@@ -249,8 +252,9 @@ impl House {
     fn local(&self) -> Vec<P3> {
         let [w, d, e, i] = [self.width, self.depth, self.eaves, self.inset];
         let (low, top) = (self.base - self.floor, self.eaves + self.rise);
-        let rectangle =
-            |inset: i64, z: i64| [[inset, inset, z], [w - inset, inset, z], [w - inset, d - inset, z], [inset, d - inset, z]];
+        let rectangle = |inset: i64, z: i64| {
+            [[inset, inset, z], [w - inset, inset, z], [w - inset, d - inset, z], [inset, d - inset, z]]
+        };
         let outline = [rectangle(0, low), rectangle(0, e)];
         let ridge = |points: [P3; 2]| [&outline.concat()[..], &points[..]].concat();
         match self.form {
@@ -264,7 +268,9 @@ impl House {
                 let ridge = [[w, i / 2, top], [i / 2, i / 2, top], [i / 2, d, top]];
                 [&at(low)[..], &at(e)[..], &ridge[..]].concat()
             }
-            Form::Plain(Shape::Court) => [rectangle(0, low), rectangle(i, low), rectangle(0, e), rectangle(i, e)].concat(),
+            Form::Plain(Shape::Court) => {
+                [rectangle(0, low), rectangle(i, low), rectangle(0, e), rectangle(i, e)].concat()
+            }
             Form::Plain(Shape::Tower) => [outline[0], outline[1], rectangle(i, e), rectangle(i, top)].concat(),
             Form::Gablet => ridge([[w / 2, 0, top], [w / 2, d, top]]),
             Form::Pyramid => [&outline.concat()[..], &[[w / 2, d / 2, top]]].concat(),
@@ -310,7 +316,13 @@ impl House {
                 let is_door = !*has_door && storey == 0 && low == 0 && column == columns / 2;
                 *has_door |= is_door;
                 let (surface, sill) = if is_door { (Surface::Door, low + 100) } else { (Surface::Window, sill) };
-                openings.push(Opening { surface, start: a, step, along: [middle - 2, middle + 2], heights: [sill, head] });
+                openings.push(Opening {
+                    surface,
+                    start: a,
+                    step,
+                    along: [middle - 2, middle + 2],
+                    heights: [sill, head],
+                });
             }
         }
         openings

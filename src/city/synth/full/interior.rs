@@ -14,7 +14,7 @@ use crate::city::synth::{
     full::{
         blocks::Block,
         field::{P2, P3},
-        frame::{Strip, steps},
+        frame::{Frame, Strip, steps},
         house::{Form, Function, House},
         object::{Geometry, Object},
         plan::Plan,
@@ -66,13 +66,15 @@ const PLOTS: [Plot; 10] = [
     Plot { name: "room-8", unit: Some(1), low: [95, 35], high: [WIDTH - WALL, DEPTH - WALL], door: Door::South },
 ];
 
-/// The town hall as a building: at the north side of the market.
+/// The town hall as a building: at the north side of the market, its front to the south.
 pub fn hall(plan: &Plan, block: &Block) -> Option<House> {
     let strip = Strip::along(&block.corners, 2, steps(1_500), DEPTH, &[])?;
     let spare = strip.length() - WIDTH;
     if spare < 0 {
         return None;
     }
+    let back = strip.house(spare / 2, 0);
+    let turned = Frame { u: back.u.map(|a| -a), v: back.v.map(|a| -a), ..back.moved(WIDTH, DEPTH) };
     let mut house = House {
         form: Form::Plain(Shape::Hip),
         width: WIDTH,
@@ -84,7 +86,7 @@ pub fn hall(plan: &Plan, block: &Block) -> Option<House> {
         function: Function::TownHall,
         year: BUILT,
         is_fine: true,
-        ..House::at(strip.house(spare / 2, 0))
+        ..House::at(turned)
     };
     house.stand(&plan.field);
     Some(house)

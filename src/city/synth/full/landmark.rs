@@ -58,7 +58,8 @@ fn parts(plan: &Plan, ground: &Strip) -> Option<Vec<(&'static str, House)>> {
     let crossing = steps(9_000).min(nave / 3);
     let south = |x: i64, width: i64, deep: i64| (frame.moved(x, arm - deep), [width, deep]);
     let north = |x: i64, width: i64, deep: i64| {
-        let turned = Frame { u: frame.u.map(|a| -a), v: frame.v.map(|a| -a), ..frame.moved(x + width, arm + wide + deep) };
+        let turned =
+            Frame { u: frame.u.map(|a| -a), v: frame.v.map(|a| -a), ..frame.moved(x + width, arm + wide + deep) };
         (turned, [width, deep])
     };
     let here = |x: i64, y: i64, width: i64, deep: i64| (frame.moved(x, y), [width, deep]);
@@ -84,7 +85,8 @@ fn parts(plan: &Plan, ground: &Strip) -> Option<Vec<(&'static str, House)>> {
     let mut parts: Vec<(&'static str, House)> = list
         .into_iter()
         .map(|(name, (frame, [width, depth]), form, eaves, rise, inset)| {
-            let mut part = House { form, width, depth, eaves, rise, inset, storey: eaves, year: DONE, ..House::at(frame) };
+            let mut part =
+                House { form, width, depth, eaves, rise, inset, storey: eaves, year: DONE, ..House::at(frame) };
             part.stand(&plan.field);
             (name, part)
         })

@@ -30,7 +30,9 @@ pub fn town(plan: &Plan) -> &'static str {
 pub fn street(plan: &Plan, is_upright: bool, line: i64, street: Street) -> String {
     let name = match street {
         Street::Boulevard => {
-            return ["South Wall", "East Wall", "North Wall"][usize::from(is_upright) + 2 * usize::from(!is_upright && line > 0)].into();
+            return ["South Wall", "East Wall", "North Wall"]
+                [usize::from(is_upright) + 2 * usize::from(!is_upright && line > 0)]
+            .into();
         }
         Street::River => return if is_upright { "Quay".into() } else { "River Street".into() },
         _ => {
@@ -42,6 +44,7 @@ pub fn street(plan: &Plan, is_upright: bool, line: i64, street: Street) -> Strin
         Street::Lane => "Lane",
         Street::Main => "Street",
         Street::Avenue => "Road",
+        Street::Path => "Path",
         _ => "Track",
     };
     // Names come again after forty lines.
@@ -67,7 +70,8 @@ pub fn address(plan: &Plan, [i, j]: Cell, lot: &Lot) -> Address {
     };
     let name = street(plan, is_upright, line, kind);
     // Odd numbers on one side, even ones on the other, and fifty of each from crossing to crossing.
-    let number = 100 * along.abs().min((along + 1).abs()) + 2 * lot.place + if matches!(lot.side, 0 | 3) { 2 } else { 1 };
+    let number =
+        100 * along.abs().min((along + 1).abs()) + 2 * lot.place + if matches!(lot.side, 0 | 3) { 2 } else { 1 };
     let code = format!("{:05}", 10_000 + (i + 150) * 300 + j + 150);
     Address { street: format!("{name} {side}"), number, code, town: town(plan) }
 }
@@ -116,7 +120,8 @@ fn inhabitants(house: &House, random: &mut Random) -> i64 {
         _ => return 0,
     };
     let area_each = if house.end.is_some() { 14 } else { 40 };
-    (house.floor_area() * share * random.range(60, 125) / (10_000 * area_each)).max(i64::from(house.function == Function::Residential))
+    (house.floor_area() * share * random.range(60, 125) / (10_000 * area_each))
+        .max(i64::from(house.function == Function::Residential))
 }
 
 /// A to G: newer is better, and some old houses were insulated.

@@ -73,7 +73,15 @@ pub struct Object {
 impl Object {
     /// An object with nothing but an id and a type.
     pub fn new(id: String, kind: &'static str) -> Self {
-        Self { id, kind, parent: None, children: Vec::new(), attributes: Vec::new(), address: None, geometries: Vec::new() }
+        Self {
+            id,
+            kind,
+            parent: None,
+            children: Vec::new(),
+            attributes: Vec::new(),
+            address: None,
+            geometries: Vec::new(),
+        }
     }
 
     /// With a geometry more.
@@ -209,7 +217,10 @@ impl Geometry {
                 write!(out, r#"{{"type":"GeometryInstance","template":{template},"boundaries":[{index}],"#)?;
                 let part = |value: i64| signed_thousandths(value);
                 let (c, s, minus, h) = (part(*x), part(*y), part(-y), part(*z));
-                write!(out, r#""transformationMatrix":[{c},{minus},0.0,0.0,{s},{c},0.0,0.0,0.0,0.0,{h},0.0,0.0,0.0,0.0,1.0]"#)?;
+                write!(
+                    out,
+                    r#""transformationMatrix":[{c},{minus},0.0,0.0,{s},{c},0.0,0.0,0.0,0.0,{h},0.0,0.0,0.0,0.0,1.0]"#
+                )?;
             }
         }
         write!(out, "}}")

@@ -17,9 +17,10 @@ use crate::city::synth::{
 
 const COLUMN: u64 = 21;
 const ROW: u64 = 22;
+const PATH: u64 = 23;
 
 /// Half the width of the river with its quays, millimetres.
-pub const RIVER: i64 = 48_000;
+pub const RIVER: i64 = 37_000;
 
 /// What a street is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +33,8 @@ pub enum Street {
     Boulevard,
     /// Between later blocks.
     Avenue,
+    /// For those on foot only.
+    Path,
     /// Through the fields.
     Track,
     /// The river and its quays.
@@ -46,6 +49,7 @@ impl Street {
             Self::Main => 8_500,
             Self::Boulevard => 17_000,
             Self::Avenue => 6_500,
+            Self::Path => 2_300,
             Self::Track => 3_000,
             Self::River => RIVER,
         }
@@ -58,6 +62,7 @@ impl Street {
             Self::Main => 210,
             Self::Boulevard => 270,
             Self::Avenue => 230,
+            Self::Path => 330,
             Self::Track => 120,
             Self::River => 220,
         }
@@ -85,11 +90,11 @@ pub struct Plan {
 impl Plan {
     /// The plan of a city.
     pub fn new(options: &SynthOptions) -> Self {
-        // About 19 buildings to a cell, and 3.5 r² cells within ring r.
-        let last = (((options.buildings * 2 / 133) as f64).sqrt().round() as i64).max(1);
+        // About 15 buildings to a cell, and 3.5 r² cells within ring r.
+        let last = (((options.buildings / 52) as f64).sqrt().round() as i64).max(1);
         let core = (last * 3 / 10).max(1);
-        let columns = Axis::new(options.seed, COLUMN, core, [108_000, 64_000, 94_000]);
-        let rows = Axis::new(options.seed, ROW, core, [92_000, 58_000, 84_000]);
+        let columns = Axis::new(options.seed, COLUMN, core, [104_000, 62_000, 80_000]);
+        let rows = Axis::new(options.seed, ROW, core, [90_000, 56_000, 64_000]);
         let mut plan = Self {
             options: *options,
             field: Field::new(options.seed, 0),
@@ -125,7 +130,7 @@ impl Plan {
         match () {
             () if i == self.river() => Street::River,
             () if i == self.core + 1 && j.abs() <= self.core => Street::Boulevard,
-            () => self.street(sides, i),
+            () => self.street(sides, i, COLUMN),
         }
     }
 
@@ -133,16 +138,20 @@ impl Plan {
     pub fn level(&self, i: i64, j: i64) -> Street {
         let sides = [[i, j - 1], [i, j]];
         let is_wall = (j == -self.core || j == self.core + 1) && i.abs() <= self.core;
-        if is_wall { Street::Boulevard } else { self.street(sides, j) }
+        if is_wall { Street::Boulevard } else { self.street(sides, j, ROW) }
     }
 
-    fn street(&self, sides: [Cell; 2], line: i64) -> Street {
+    fn street(&self, sides: [Cell; 2], line: i64, salt: u64) -> Street {
+        let [_, [i, j]] = sides;
+        // Some blocks of later times hang together: only a path leads between them.
+        let is_path = || Random::at(self.options.seed, PATH + salt, [i, j]).chance(24);
         let is_outside = sides.iter().all(|cell| Self::ring(*cell) > self.last + 1);
         match line {
             0 => Street::Main,
             _ if is_outside => Street::Track,
             _ if sides.iter().all(|cell| self.is_core(*cell)) => Street::Lane,
             _ if line.rem_euclid(4) == 0 => Street::Main,
+            _ if is_path() => Street::Path,
             _ => Street::Avenue,
         }
     }

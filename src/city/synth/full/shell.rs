@@ -82,11 +82,11 @@ impl Shell {
         Self { points: at(low).chain(at(high)).collect(), faces }
     }
 
-    /// Adds a triangle, unless two of its corners are one.
+    /// Adds a triangle that looks up; others are left away.
     pub fn triangle(&mut self, surface: Surface, corners: [u32; 3]) {
         let [a, b, c] = corners.map(|i| self.points[i as usize]);
         let cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-        if cross != 0 {
+        if cross > 0 {
             self.faces.push((surface, vec![corners.to_vec()]));
         }
     }

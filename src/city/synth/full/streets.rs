@@ -16,7 +16,7 @@ use crate::city::synth::full::{
 /// The sides of blocks are cut in so many parts.
 pub const PARTS: i64 = 4;
 /// The width of a quay, millimetres.
-const QUAY_WIDTH: i64 = 13_000;
+const QUAY_WIDTH: i64 = 11_000;
 /// The width of the slope from the quay to the water, millimetres.
 const BANK: i64 = 3_500;
 
@@ -77,6 +77,11 @@ fn lane(i: usize, _: usize) -> Surface {
     if i == 1 { Surface::Traffic } else { Surface::Pavement }
 }
 
+/// What the lanes of a street are.
+fn lanes(street: Street) -> impl Fn(usize, usize) -> Surface {
+    move |i, j| if street == Street::Path { Surface::Pavement } else { lane(i, j) }
+}
+
 fn crossing(i: usize, j: usize) -> Surface {
     if i == 1 || j == 1 { Surface::Traffic } else { Surface::Pavement }
 }
@@ -86,7 +91,7 @@ pub fn upright(plan: &Plan, i: i64, j: i64) -> Shell {
     let mut shell = Shell::default();
     let rows: Vec<Vec<P3>> =
         plan.upright_points(i, j).iter().map(|row| row.map(|at| plan.field.ground(at)).to_vec()).collect();
-    shell.net(&rows, lane);
+    shell.net(&rows, lanes(plan.upright(i, j)));
     shell
 }
 
@@ -96,7 +101,8 @@ pub fn level(plan: &Plan, i: i64, j: i64) -> Shell {
     let across = plan.level_points(i, j);
     let row = |k: usize| across.iter().map(|points| plan.field.ground(points[k])).collect();
     let rows: Vec<Vec<P3>> = (0..4).map(row).collect();
-    shell.net(&rows, |i, j| lane(j, i));
+    let lanes = lanes(plan.level(i, j));
+    shell.net(&rows, |i, j| lanes(j, i));
     shell
 }
 
@@ -176,9 +182,8 @@ pub fn river(plan: &Plan, j: i64) -> RiverPart {
         std::iter::once(before[PARTS as usize]).chain(lines(is_east, j)).collect()
     };
     let water = |is_east| along(is_east, &|is_east, j| plan.water_edge(is_east, j));
-    let quay = |is_east| {
-        along(is_east, &|is_east, j| plan.quay_points(is_east, j).into_iter().map(|row| row[3]).collect())
-    };
+    let quay =
+        |is_east| along(is_east, &|is_east, j| plan.quay_points(is_east, j).into_iter().map(|row| row[3]).collect());
     let level = |points: [P2; 2], heights: [i64; 2]| {
         [[points[0][0], points[0][1], heights[0]], [points[1][0], points[1][1], heights[1]]].to_vec()
     };
@@ -230,9 +235,12 @@ mod tests {
                 shells.extend([upright(plan, i, j), crossing_of(plan, i, j)]);
             }
             for shell in shells {
-                all.extend(shell.faces.iter().map(|(_, rings)| {
-                    rings[0].iter().map(|i| shell.points[*i as usize]).collect::<Vec<_>>()
-                }));
+                all.extend(
+                    shell
+                        .faces
+                        .iter()
+                        .map(|(_, rings)| rings[0].iter().map(|i| shell.points[*i as usize]).collect::<Vec<_>>()),
+                );
             }
         }
         all
@@ -243,7 +251,7 @@ mod tests {
         for seed in [1, 2, 3] {
             let plan = Plan::new(&SynthOptions { buildings: 1500, seed });
             let mut edges: HashMap<(P3, P3), i32> = HashMap::new();
-            for face in faces(&plan, 6) {
+            for face in faces(&plan, 8) {
                 let [a, b, c] = [face[0], face[1], face[2]];
                 let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
                 assert!(twice > 0, "seed {seed}: a face that looks down: {face:?}");

@@ -27,13 +27,27 @@ const MANSARD: Form = Form::Plain(Shape::Mansard);
 
 fn style_of(year: i64) -> Style {
     match year {
-        ..=1699 => Style { forms: &[(60, Form::Gablet), (34, GABLE), (6, HIP)], storeys: [2, 3], storey: 2_700, pitch: 105 },
-        1700..=1849 => {
-            Style { forms: &[(50, GABLE), (28, MANSARD), (14, Form::Gablet), (8, HIP)], storeys: [3, 4], storey: 3_000, pitch: 85 }
+        ..=1699 => {
+            Style { forms: &[(60, Form::Gablet), (34, GABLE), (6, HIP)], storeys: [2, 3], storey: 2_700, pitch: 105 }
         }
-        1850..=1914 => Style { forms: &[(46, MANSARD), (38, GABLE), (10, FLAT), (6, HIP)], storeys: [4, 5], storey: 3_400, pitch: 75 },
-        1915..=1945 => Style { forms: &[(66, GABLE), (18, HIP), (16, FLAT)], storeys: [3, 4], storey: 3_000, pitch: 80 },
-        1946..=1979 => Style { forms: &[(48, FLAT), (40, GABLE), (12, SHED)], storeys: [3, 5], storey: 2_800, pitch: 45 },
+        1700..=1849 => Style {
+            forms: &[(50, GABLE), (28, MANSARD), (14, Form::Gablet), (8, HIP)],
+            storeys: [3, 4],
+            storey: 3_000,
+            pitch: 85,
+        },
+        1850..=1914 => Style {
+            forms: &[(46, MANSARD), (38, GABLE), (10, FLAT), (6, HIP)],
+            storeys: [4, 5],
+            storey: 3_400,
+            pitch: 75,
+        },
+        1915..=1945 => {
+            Style { forms: &[(66, GABLE), (18, HIP), (16, FLAT)], storeys: [3, 4], storey: 3_000, pitch: 80 }
+        }
+        1946..=1979 => {
+            Style { forms: &[(48, FLAT), (40, GABLE), (12, SHED)], storeys: [3, 5], storey: 2_800, pitch: 45 }
+        }
         _ => Style { forms: &[(58, FLAT), (22, GABLE), (20, SHED)], storeys: [4, 6], storey: 3_000, pitch: 40 },
     }
 }
@@ -70,7 +84,9 @@ pub fn town_house(frame: Frame, size: [i64; 2], kind: Kind, era: &Era, years: &[
     let plinth = random.range(2, 9) * 100;
     let (rise, inset) = roof(form, size, style.pitch + random.range(-8, 8), random);
     let function = match kind {
-        Kind::Close | Kind::OldTown => random.pick(&[(62, Function::Residential), (36, Function::Commercial), (2, Function::Public)]),
+        Kind::Close | Kind::OldTown => {
+            random.pick(&[(62, Function::Residential), (36, Function::Commercial), (2, Function::Public)])
+        }
         _ => random.pick(&[(72, Function::Residential), (18, Function::Commercial), (10, Function::Office)]),
     };
     House {

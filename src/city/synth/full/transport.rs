@@ -46,8 +46,8 @@ pub struct Service {
     pub out: Way,
     /// Its way back.
     pub back: Way,
-    /// When it sets out first, seconds after midnight.
-    pub starts: i64,
+    /// At which stop it begins its day, counted along its way out and back again.
+    pub begins: usize,
 }
 
 /// Where a vehicle is at a time.
@@ -123,10 +123,12 @@ pub fn services(plan: &Plan) -> Vec<Service> {
     for (vehicle, [out, back], apart, most) in ways {
         let turn = duration(&out, vehicle) + duration(&back, vehicle) + 2 * vehicle.stays()[1];
         let count = (turn / apart).clamp(2, most);
+        // Runs from stop to stop, there and back; they begin the day evenly spread over these.
+        let around = out.stops.len() + back.stops.len() - 2;
         for k in 0..count {
+            let begins = around * k as usize / count as usize;
             let (out, back) = (out.clone(), back.clone());
-            let starts = BEGINS + turn * k / count;
-            all.push(Service { id: format!("{}-{}", vehicle.name(), k + 1), vehicle, out, back, starts });
+            all.push(Service { id: format!("{}-{}", vehicle.name(), k + 1), vehicle, out, back, begins });
         }
     }
     all
@@ -216,38 +218,49 @@ fn duration(way: &Way, vehicle: Vehicle) -> i64 {
 }
 
 impl Service {
-    /// Its day, key by key, second after second.
+    /// Its way out or back, from which stop of it the day begins, and whether it is that out.
+    fn beginning(&self) -> (bool, usize) {
+        let out = self.out.stops.len() - 1;
+        if self.begins < out { (true, self.begins) } else { (false, self.begins - out) }
+    }
+
+    /// Where it looks when it goes in a direction: a tram has no front, on its way back it looks where it came from.
+    fn looks(&self, is_out: bool, direction: P2) -> P2 {
+        if self.vehicle == Vehicle::Tram && !is_out { direction.map(|d| -d) } else { direction }
+    }
+
+    /// Its day, key by key, each later than the one before.
     pub fn day(&self, each: &mut dyn FnMut(&Key) -> Result<()>) -> Result<()> {
         let [stay, turn] = self.vehicle.stays();
-        let mut now = self.starts;
+        let (mut is_out, mut skipped) = self.beginning();
+        let mut now = BEGINS;
         let mut last_yaw = None;
-        let mut is_out = true;
-        loop {
+        while now < ENDS {
             let way = if is_out { &self.out } else { &self.back };
-            // A tram has no front: on its way back it looks where it came from.
-            let is_backwards = self.vehicle == Vehicle::Tram && !is_out;
             let mut key = |second: i64, at: P3, direction: P2| {
-                let yaw = if is_backwards { yaw(direction.map(|d| -d)) } else { yaw(direction) };
+                let yaw = yaw(self.looks(is_out, direction));
                 let yaw = last_yaw.map_or(yaw, |last: i64| yaw + (last - yaw + 18_000).div_euclid(36_000) * 36_000);
                 last_yaw = Some(yaw);
                 each(&Key { second, at, yaw })
             };
             let lengths = way.lengths();
-            for (pair, seconds) in way.stops.windows(2).zip(runs(way, self.vehicle)) {
-                run(way, &lengths, [pair[0], pair[1]], seconds, &mut |second, at, direction| key(now + second, at, direction))?;
+            for (pair, seconds) in way.stops.windows(2).zip(runs(way, self.vehicle)).skip(skipped) {
+                run(way, &lengths, [pair[0], pair[1]], seconds, &mut |second, at, to| key(now + second, at, to))?;
                 now += seconds + if pair[1] + 1 == way.points.len() { turn } else { stay };
             }
-            if now > ENDS && !is_out {
-                return Ok(());
-            }
-            is_out = !is_out;
+            (is_out, skipped) = (!is_out, 0);
         }
+        Ok(())
     }
 
     /// The vehicle as it stands in the city: where its day begins.
     pub fn object(&self) -> Object {
-        let [a, b] = [self.out.points[0], self.out.points[1]];
-        let frame = Frame::towards([a[0], a[1]], [b[0], b[1]]);
+        let (is_out, stop) = self.beginning();
+        let way = if is_out { &self.out } else { &self.back };
+        let first = way.stops[stop];
+        let [a, b] = [way.points[first], way.points[first + 1]];
+        let [x, y] = self.looks(is_out, [b[0] - a[0], b[1] - a[1]]);
+        let frame = Frame::towards([a[0], a[1]], [a[0] + x, a[1] + y]);
         Object::new(self.id.clone(), "CityFurniture")
             .text("class", self.vehicle.name())
             .with(Geometry::Solids("2", self.vehicle.solids(&frame, a[2])))

@@ -23,7 +23,8 @@ const SPECIES: [(usize, &str, i64); 5] = [
     (2, "Picea abies", 17_000),
 ];
 /// Turns without rounding: cosine and sine, thousandths.
-const TURNS: [P2; 8] = [[1000, 0], [960, 280], [800, 600], [600, 800], [280, 960], [-600, 800], [-960, 280], [-280, -960]];
+const TURNS: [P2; 8] =
+    [[1000, 0], [960, 280], [800, 600], [600, 800], [280, 960], [-600, 800], [-960, 280], [-280, -960]];
 
 /// The templates: closed shells of trees a metre high, points in thousandths of it.
 pub fn templates() -> Vec<(&'static str, Vec<Shell>)> {
