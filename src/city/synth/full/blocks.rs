@@ -79,7 +79,7 @@ impl Block {
         let era = Era::of(plan, cell, &mut random);
         let corners = plan.block(cell);
         let kind = kind_of(plan, cell, &era, &corners, &mut random);
-        let mut builder = Builder { plan, era, corners, kind, lots: Vec::new(), random, is_fine: is_fine(plan, cell) };
+        let mut builder = Builder { plan, era, corners, kind, lots: Vec::new(), random, is_fine: is_fine(cell) };
         builder.build();
         let mut lots = builder.lots;
         if kind == Kind::Market {
@@ -107,9 +107,9 @@ impl Block {
     }
 }
 
-/// Houses around the church and the market have windows and doors.
-fn is_fine(plan: &Plan, [i, j]: Cell) -> bool {
-    plan.is_core([i, j]) && (-1..=2).contains(&i) && (-1..=1).contains(&j)
+/// Houses in the middle of the town and along the tram have windows and doors.
+fn is_fine(cell: Cell) -> bool {
+    Plan::ring(cell) <= 2 || (cell[0].abs() <= 8 && matches!(cell[1], -1 | 0))
 }
 
 fn kind_of(plan: &Plan, cell: Cell, era: &Era, corners: &[P2; 4], random: &mut Random) -> Kind {
@@ -237,7 +237,7 @@ impl Builder<'_> {
             let width = steps(self.random.range(least, most));
             let width = if left - width < steps(least) * 4 / 5 { left } else { width };
             let years = self.era.years(&mut self.random);
-            let house = style::town_house(
+            let mut house = style::town_house(
                 strip.house(at, 0),
                 [width, strip.depth],
                 self.kind,
@@ -245,6 +245,8 @@ impl Builder<'_> {
                 &years,
                 &mut self.random,
             );
+            // Those at the corners of the block, and at an alley, look to the side too.
+            house.party = [place > 0, left > width];
             self.add(side, place, house, &years);
             at += width;
             place += 1;
@@ -297,6 +299,8 @@ impl Builder<'_> {
                     own.push(self.random.range(years[0] + 30, LAST));
                     house = House { frame: house.frame, ..style::terrace(&own, [width, depth], &mut self.random) };
                 }
+                let is_last = at + 2 * width > strip.length();
+                house.party = [place % run != 0, (place + 1) % run != 0 && !is_last];
                 self.add(side, place, house, &own);
                 place += 1;
                 at += width + if place % run == 0 { steps(3_000) } else { 0 };
@@ -381,7 +385,7 @@ impl Builder<'_> {
                     eaves: storeys * 2_800 + 600,
                     rise: if form == Shape::Gable { deep * STEP * 3 / 10 } else { 0 },
                     storey: 2_800,
-                    is_in_row: true,
+                    party: [at > shift, at + 2 * stair <= ground.length()],
                     ..House::at(ground.house(at, back))
                 };
                 self.add(0, place, house, &[first.min(LAST)]);

@@ -77,8 +77,8 @@ pub struct House {
     pub year: i64,
     /// The year in which it was pulled down; `None`: it stands.
     pub end: Option<i64>,
-    /// Whether others stand wall to wall with it.
-    pub is_in_row: bool,
+    /// Whether others stand wall to wall with it, at the left and at the right.
+    pub party: [bool; 2],
     /// Whether it has a level of detail 3.
     pub is_fine: bool,
 }
@@ -100,7 +100,7 @@ impl House {
             function: Function::Residential,
             year: 0,
             end: None,
-            is_in_row: false,
+            party: [false; 2],
             is_fine: false,
         }
     }
@@ -298,7 +298,12 @@ impl House {
         let [a, b] = [points[ring[0] as usize], points[ring[1] as usize]];
         let step = [(b[0] - a[0]).signum(), (b[1] - a[1]).signum()];
         let length = (b[0] - a[0]).abs() + (b[1] - a[1]).abs();
-        if length < 10 || (self.is_in_row && step[1] != 0) {
+        let is_party = match step[1] {
+            0 => false,
+            1.. => self.party[1],
+            _ => self.party[0],
+        };
+        if length < 10 || is_party {
             return Vec::new();
         }
         let top = ring[2..].iter().map(|i| points[*i as usize][2]).min().unwrap_or(0);

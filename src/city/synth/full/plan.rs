@@ -90,8 +90,8 @@ pub struct Plan {
 impl Plan {
     /// The plan of a city.
     pub fn new(options: &SynthOptions) -> Self {
-        // About 15 buildings to a cell, and 3.5 r² cells within ring r.
-        let last = (((options.buildings / 52) as f64).sqrt().round() as i64).max(1);
+        // About 15 buildings to a cell, and 3.9 r² cells within ring r.
+        let last = (((options.buildings / 58) as f64).sqrt().round() as i64).max(1);
         let core = (last * 3 / 10).max(1);
         let columns = Axis::new(options.seed, COLUMN, core, [104_000, 62_000, 80_000]);
         let rows = Axis::new(options.seed, ROW, core, [90_000, 56_000, 64_000]);
@@ -113,10 +113,10 @@ impl Plan {
         -self.core
     }
 
-    /// The ring of a cell: eight-sided.
+    /// The ring of a cell: a square without its corners.
     pub fn ring([i, j]: Cell) -> i64 {
         let (i, j) = (i.abs(), j.abs());
-        i.max(j).max((2 * (i + j) + 2) / 3)
+        i.max(j).max((4 * (i + j) + 6) / 7)
     }
 
     /// Whether a cell is of the old town.
@@ -246,7 +246,7 @@ pub struct Cells {
 impl Cells {
     /// The farthest column of row `j` that lies within `ring`; -1 where none does.
     fn reach(ring: i64, j: i64) -> i64 {
-        if j.abs() > ring { -1 } else { ring.min(ring * 3 / 2 - j.abs()) }
+        if j.abs() > ring { -1 } else { ring.min(ring * 7 / 4 - j.abs()) }
     }
 }
 

@@ -111,24 +111,22 @@ pub fn crossing_of(plan: &Plan, i: i64, j: i64) -> Shell {
     let (south, north) = (plan.upright_points(i, j - 1), plan.upright_points(i, j));
     let (west, east) = (plan.level_points(i - 1, j), plan.level_points(i, j));
     let last = PARTS as usize;
-    patch(&plan.field, &south[last], &north[0], &west[last], &east[0])
+    let middle = plan.field.place([plan.east(i), plan.north(j)]);
+    patch(&plan.field, [&south[last], &north[0], &west[last], &east[0]], middle)
 }
 
 /// A net over four sides that meet in their corners: south and north from west to east, west and east from south to north.
-fn patch(field: &Field, south: &Across, north: &Across, west: &Across, east: &Across) -> Shell {
-    let inner = |i: usize, j: usize| {
-        // Where the lines that join opposite points come nearest to a quarter, and the rest.
-        let part = |k: usize| if k == 1 { 1 } else { 3 };
-        let (a, b) = (between(south[i], north[i], part(j), 4), between(west[j], east[j], part(i), 4));
-        between(a, b, 1, 2)
-    };
+/// All of them are seen from `middle`, so its inner corners, on the way there, fold nothing.
+fn patch(field: &Field, [south, north, west, east]: [&Across; 4], middle: P2) -> Shell {
+    let inner = |corner: P2| between(corner, middle, 45, 100);
     let mut shell = Shell::default();
     let rows: Vec<Vec<P3>> = (0..4)
         .map(|j| {
             let row: Across = match j {
                 0 => *south,
-                3 => *north,
-                _ => [west[j], inner(1, j), inner(2, j), east[j]],
+                1 => [west[1], inner(south[0]), inner(south[3]), east[1]],
+                2 => [west[2], inner(north[0]), inner(north[3]), east[2]],
+                _ => *north,
             };
             row.map(|at| field.ground(at)).to_vec()
         })
@@ -148,12 +146,21 @@ pub fn quays(plan: &Plan, j: i64) -> Shell {
     let [west_before, east_before] = [false, true].map(|is_east| plan.quay_points(is_east, j - 1));
     let last = PARTS as usize;
     let (river, pavement) = (plan.river(), Street::Main.pavement());
+    let middle = |south: &Across, north: &Across| {
+        between(between(south[0], south[3], 1, 2), between(north[0], north[3], 1, 2), 1, 2)
+    };
     let (south, north) = (west_before[last], west[0]);
     let street = plan.level_points(river - 1, j)[last];
-    add(&mut shell, patch(&plan.field, &south, &north, &street, &across(south[3], north[3], pavement)));
+    add(
+        &mut shell,
+        patch(&plan.field, [&south, &north, &street, &across(south[3], north[3], pavement)], middle(&south, &north)),
+    );
     let (south, north) = (reversed(&east_before[last]), reversed(&east[0]));
     let street = plan.level_points(river, j)[0];
-    add(&mut shell, patch(&plan.field, &south, &north, &across(south[0], north[0], pavement), &street));
+    add(
+        &mut shell,
+        patch(&plan.field, [&south, &north, &across(south[0], north[0], pavement), &street], middle(&south, &north)),
+    );
     shell
 }
 

@@ -98,7 +98,7 @@ pub fn town_house(frame: Frame, size: [i64; 2], kind: Kind, era: &Era, years: &[
         inset,
         storey: style.storey,
         function,
-        is_in_row: true,
+        party: [true; 2],
         ..House::at(frame)
     }
 }
@@ -118,7 +118,7 @@ pub fn terrace(years: &[i64], size: [i64; 2], random: &mut Random) -> House {
         rise,
         inset,
         storey: style.storey.min(3_000),
-        is_in_row: true,
+        party: [true; 2],
         ..House::at(nowhere)
     }
 }
