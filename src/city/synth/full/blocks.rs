@@ -14,6 +14,7 @@ use crate::city::synth::{
 };
 
 const BLOCK: u64 = 41;
+const WOODS: u64 = 42;
 
 /// What a cell is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,7 +91,8 @@ impl Block {
 
     /// A cell around the city.
     pub fn country(plan: &Plan, cell: Cell) -> Self {
-        let mut random = Random::at(plan.options.seed, BLOCK, cell);
+        // Woods are larger than fields.
+        let mut random = Random::at(plan.options.seed, WOODS, cell.map(|k| k.div_euclid(2)));
         let kind = random.pick(&[(7, Kind::Field), (3, Kind::Wood)]);
         Self { cell, kind, corners: plan.block(cell), lots: Vec::new() }
     }

@@ -56,13 +56,11 @@ impl Stream<'_, '_> {
         (self.receive)(&[object], self.standing)
     }
 
-    /// The ground of a block, by what it is.
+    /// The ground of a block, by what it is; parks and woods lie on it.
     fn ground(&mut self, block: &Block) -> Result<()> {
         let [i, j] = block.cell;
         let (prefix, kind, class) = match block.kind {
             Kind::Market => ("square", "TransportSquare", "market"),
-            Kind::Park => ("park", "PlantCover", "park"),
-            Kind::Wood => ("wood", "PlantCover", "wood"),
             Kind::Field => ("field", "LandUse", "farmland"),
             Kind::Close => ("close", "LandUse", "churchyard"),
             Kind::Halls => ("works", "LandUse", "industry"),
@@ -70,11 +68,22 @@ impl Stream<'_, '_> {
             _ => ("terrain", "TINRelief", ""),
         };
         let shell = streets::ground(self.plan, block.cell);
+        let cover = match block.kind {
+            Kind::Park => Some("park"),
+            Kind::Wood => Some("wood"),
+            _ => None,
+        };
+        if let Some(class) = cover {
+            let mut plants = shell.clone();
+            plants.points.iter_mut().for_each(|point| point[2] += parcels::LIFT);
+            let object = Object::new(format!("{class}{i}_{j}"), "PlantCover").text("class", class);
+            self.alone(object.with(Geometry::Surfaces("2", plants)))?;
+        }
         let object = Object::new(format!("{prefix}{i}_{j}"), kind);
         if class.is_empty() {
-            return self.alone(object.with(surfaces_or_terrain(shell, true)));
+            return self.alone(object.with(Geometry::Relief("2", shell)));
         }
-        self.alone(object.text("class", class).with(surfaces_or_terrain(shell, false)))
+        self.alone(object.text("class", class).with(Geometry::Surfaces("2", shell)))
     }
 
     /// The streets at the west and the south of a cell with their crossing, or the river with its quays.
@@ -97,7 +106,7 @@ impl Stream<'_, '_> {
                     .text("class", "river")
                     .with(Geometry::Surfaces("2", river.water)),
             )?;
-            self.alone(Object::new(format!("bank{j}"), "TINRelief").with(surfaces_or_terrain(river.banks, true)))?;
+            self.alone(Object::new(format!("bank{j}"), "TINRelief").with(Geometry::Relief("2", river.banks)))?;
             if transport::has_bridge(j) {
                 let mut objects = transport::bridge(plan, j);
                 let road = objects.pop();
@@ -195,10 +204,6 @@ impl Stream<'_, '_> {
         }
         Ok(())
     }
-}
-
-fn surfaces_or_terrain(shell: Shell, is_terrain: bool) -> Geometry {
-    if is_terrain { Geometry::Relief("2", shell) } else { Geometry::Surfaces("2", shell) }
 }
 
 /// The shells of a house in all its levels of detail.

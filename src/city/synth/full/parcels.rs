@@ -11,8 +11,8 @@ use crate::city::synth::full::{
     streets,
 };
 
-/// Parcels lie so far above the ground, millimetres.
-const LIFT: i64 = 40;
+/// Parcels and plants lie so far above the ground, millimetres.
+pub const LIFT: i64 = 40;
 /// Gardens reach so far behind houses in rows, steps.
 const GARDEN: i64 = steps(9_000);
 

@@ -90,9 +90,12 @@ pub struct Plan {
 impl Plan {
     /// The plan of a city.
     pub fn new(options: &SynthOptions) -> Self {
-        // About 15 buildings to a cell, and 3.9 r² cells within ring r.
-        let last = (((options.buildings / 58) as f64).sqrt().round() as i64).max(1);
-        let core = (last * 3 / 10).max(1);
+        let core_of = |last: i64| (last * 3 / 10).clamp(1, 6);
+        // A cell holds about 10 buildings, one of the old town 12 more; 3.9 r² cells lie within ring r.
+        let holds = |last: i64| 41 * last * last + 25 * (2 * core_of(last) + 1).pow(2) / 2;
+        let asked = options.buildings as i64 * 9 / 10;
+        let last = (1..).find(|last| holds(*last) >= asked).unwrap_or(1);
+        let core = core_of(last);
         let columns = Axis::new(options.seed, COLUMN, core, [104_000, 62_000, 80_000]);
         let rows = Axis::new(options.seed, ROW, core, [90_000, 56_000, 64_000]);
         let mut plan = Self {
