@@ -39,6 +39,8 @@ pub enum Kind {
     Towers,
     /// Works and stores.
     Halls,
+    /// Paved, with trees.
+    Square,
     /// Lawns and trees.
     Park,
     /// Fields around the city.
@@ -123,7 +125,7 @@ fn kind_of(plan: &Plan, cell: Cell, era: &Era, corners: &[P2; 4], random: &mut R
     if plan.is_core(cell) {
         let is_at_market = Plan::ring(cell) <= 1;
         let others = if is_at_market { 0 } else { 1 };
-        return random.pick(&[(90, Kind::OldTown), (7 * others, Kind::Courts), (2 * others, Kind::Park)]);
+        return random.pick(&[(88, Kind::OldTown), (7 * others, Kind::Courts), (2 * others, Kind::Park), (3 * others, Kind::Square)]);
     }
     // Villas have the views, works the river and the south.
     let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<i64>() / 4);
@@ -136,6 +138,7 @@ fn kind_of(plan: &Plan, cell: Cell, era: &Era, corners: &[P2; 4], random: &mut R
             (5 * villas, Kind::Villas),
             (12, Kind::Terraces),
             (4, Kind::Park),
+            (3, Kind::Square),
             (3, Kind::Towers),
         ]),
         251..=520 => random.pick(&[
@@ -195,7 +198,7 @@ impl Builder<'_> {
             Kind::Slabs => self.slabs(),
             Kind::Towers => self.towers(),
             Kind::Halls => self.halls(),
-            Kind::Market | Kind::Park | Kind::Field | Kind::Wood => {}
+            Kind::Market | Kind::Square | Kind::Park | Kind::Field | Kind::Wood => {}
         }
     }
 

@@ -61,6 +61,7 @@ impl Stream<'_, '_> {
         let [i, j] = block.cell;
         let (prefix, kind, class) = match block.kind {
             Kind::Market => ("square", "TransportSquare", "market"),
+            Kind::Square => ("square", "TransportSquare", "square"),
             Kind::Field => ("field", "LandUse", "farmland"),
             Kind::Close => ("close", "LandUse", "churchyard"),
             Kind::Halls => ("works", "LandUse", "industry"),

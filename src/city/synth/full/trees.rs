@@ -123,6 +123,7 @@ impl<'a> Planter<'a> {
         let (count, kinds): (i64, &[(i64, usize)]) = match block.kind {
             Kind::Park => (self.random.range(36, 60), &[(4, 0), (2, 1), (2, 3), (1, 4)]),
             Kind::Wood => (self.random.range(70, 110), &[(3, 4), (2, 3), (1, 0)]),
+            Kind::Square => (self.random.range(8, 18), &[(4, 0), (1, 1)]),
             Kind::Field if self.random.chance(40) => (self.random.range(2, 9), &[(3, 2), (1, 0)]),
             Kind::Field | Kind::Market => return,
             Kind::Villas => (self.random.range(14, 26), &[(3, 2), (3, 3), (1, 4), (1, 0)]),
