@@ -125,7 +125,12 @@ fn kind_of(plan: &Plan, cell: Cell, era: &Era, corners: &[P2; 4], random: &mut R
     if plan.is_core(cell) {
         let is_at_market = Plan::ring(cell) <= 1;
         let others = if is_at_market { 0 } else { 1 };
-        return random.pick(&[(88, Kind::OldTown), (7 * others, Kind::Courts), (2 * others, Kind::Park), (3 * others, Kind::Square)]);
+        return random.pick(&[
+            (88, Kind::OldTown),
+            (7 * others, Kind::Courts),
+            (2 * others, Kind::Park),
+            (3 * others, Kind::Square),
+        ]);
     }
     // Villas have the views, works the river and the south.
     let middle = [0, 1].map(|k| corners.iter().map(|c| c[k]).sum::<i64>() / 4);
@@ -409,7 +414,7 @@ impl Builder<'_> {
             let has_podium = this.random.chance(45);
             let storeys = this.random.range(8, reach.max(10));
             let side = this.random.range(steps(16_000), steps(24_000)).min(width.min(depth));
-            let year = this.random.range(this.era.first.max(1962).min(2010), LAST);
+            let year = this.random.range(this.era.first.clamp(1962, 2010), LAST);
             let shape = if has_podium { Shape::Tower } else { Shape::Flat };
             let low = this.random.range(2, 4) * 3_300;
             let house = House {
