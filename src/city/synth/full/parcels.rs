@@ -33,6 +33,7 @@ pub fn gardens(plan: &Plan, block: &Block, [first, last]: [u64; 2]) -> Vec<Objec
         let object = Object::new(format!("parcel{number}"), kind)
             .text("class", class)
             .text("building", format!("b{number}"))
+            .whole("yearOfConstruction", house.year)
             .with(Geometry::Surfaces("2", laid(&corners, &ground)));
         objects.push(object);
     }
