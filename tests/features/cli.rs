@@ -249,9 +249,29 @@ fn what_cannot_be_written_leaves_nothing() {
     let output = run(&["synth", "--buildings", "5", "--seed", "1", "-o", &folder.path("no/such/folder/a.json")]);
     assert_eq!(code(&output), 1);
     assert!(err(&output).contains("folder"), "{}", err(&output));
-    let full = run(&["synth", "--detail", "full", "--buildings", "5", "--seed", "1", "-o", &folder.path("a.json")]);
-    assert_eq!(code(&full), 1);
+    let a = folder.path("a.json");
+    for wrong in ["5", "100001"] {
+        let full = run(&["synth", "--detail", "full", "--buildings", wrong, "--seed", "1", "-o", &a]);
+        assert_eq!(code(&full), 2);
+        assert!(err(&full).contains("100 to 100000 buildings"), "{}", err(&full));
+    }
+    let plain = run(&["synth", "--buildings", "5", "--seed", "1", "--timetable", &folder.path("a.csv"), "-o", &a]);
+    assert_eq!(code(&plain), 2);
+    assert!(err(&plain).contains("--detail full"), "{}", err(&plain));
     assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 0);
+}
+
+#[test]
+fn a_city_in_full_comes_with_a_timetable() {
+    let folder = Folder::new("full");
+    let (city, day) = (folder.path("a.city.jsonl.gz"), folder.path("a.csv"));
+    let full = ["synth", "--detail", "full", "--buildings", "100", "--seed", "1", "--timetable", &day, "-o", &city];
+    assert_eq!(code(&run(&full)), 0);
+    let table = std::fs::read_to_string(&day).unwrap();
+    assert!(table.starts_with("id,t,x,y,z,yaw,scale\ntram-1,2025-06-01T05:00:00,"), "{}", &table[..80]);
+    let info = run(&["info", &city]);
+    let said = String::from_utf8_lossy(&info.stdout);
+    assert!(said.contains("BuildingStorey") && said.contains("Warnings    none"), "{said}");
 }
 
 #[test]

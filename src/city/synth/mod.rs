@@ -4,6 +4,7 @@
 //! machine can change a byte. The city grows outward from its centre block by block; blocks are made when they are
 //! written and forgotten afterwards, so time is linear and memory constant in the number of buildings.
 
+pub mod full;
 mod house;
 mod layout;
 mod random;
