@@ -168,20 +168,19 @@ impl Window {
     }
 
     fn buttons(&mut self, ui: &mut Ui) {
-        let named = |ui: &mut Ui, sign: &str, name: &str, key: &str| {
-            let button = ui.button(sign).on_hover_text(format!("{name} ({key})"));
-            button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
-            button.clicked()
+        let (play, name) = match self.timeline.plays {
+            true => (Sign::Pause, "Pause"),
+            false => (Sign::Play, "Play through time"),
         };
-        if named(ui, "⏪", "Step back in time", ",") {
-            self.step_time(Step::Back);
-        }
-        let (sign, name) = if self.timeline.plays { ("⏸", "Pause") } else { ("▶", "Play through time") };
-        if named(ui, sign, name, "Space") {
-            self.step_time(Step::Play);
-        }
-        if named(ui, "⏩", "Step on in time", ".") {
-            self.step_time(Step::On);
+        let all = [
+            (Sign::Back, "Step back in time", ",", Step::Back),
+            (play, name, "Space", Step::Play),
+            (Sign::On, "Step on in time", ".", Step::On),
+        ];
+        for (sign, name, key, step) in all {
+            if sign.button(ui, name, key) {
+                self.step_time(step);
+            }
         }
         let shown = SPEEDS.iter().find(|(speed, _)| *speed == self.timeline.speed).map_or("1×", |(_, name)| *name);
         egui::ComboBox::from_id_salt("speed of time").selected_text(shown).width(48.0).show_ui(ui, |ui| {
@@ -266,6 +265,48 @@ impl Window {
         self.timeline.plays = at < span[1];
         self.show_moment(at.floored(unit), span);
         ui.ctx().request_repaint();
+    }
+}
+
+/// What is on a button: drawn, for fonts lack it.
+#[derive(Clone, Copy)]
+enum Sign {
+    Back,
+    Play,
+    Pause,
+    On,
+}
+
+impl Sign {
+    /// A button with it; whether it was clicked.
+    fn button(self, ui: &mut Ui, name: &str, key: &str) -> bool {
+        let button = ui.add(egui::Button::new("").min_size(vec2(26.0, 22.0))).on_hover_text(format!("{name} ({key})"));
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+        let color = ui.style().interact(&button).fg_stroke.color;
+        let middle = button.rect.center();
+        let painter = ui.painter();
+        // Half as wide as it is high, its middle so far aside; turned to the left by a minus.
+        let triangle = |aside: f32, turn: f32| {
+            let at = |x: f32, y: f32| middle + vec2(aside + turn * x, y);
+            let points = vec![at(-3.0, -5.0), at(4.0, 0.0), at(-3.0, 5.0)];
+            painter.add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
+        };
+        let bar = |aside: f32| {
+            painter.rect_filled(Rect::from_center_size(middle + vec2(aside, 0.0), vec2(2.5, 10.0)), 0.0, color);
+        };
+        match self {
+            Self::Play => triangle(0.0, 1.0),
+            Self::Pause => [-3.0, 3.0].into_iter().for_each(bar),
+            Self::Back => {
+                triangle(1.0, -1.0);
+                bar(-5.0);
+            }
+            Self::On => {
+                triangle(-1.0, 1.0);
+                bar(5.0);
+            }
+        }
+        button.clicked()
     }
 }
 
