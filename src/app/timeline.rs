@@ -183,11 +183,13 @@ impl Window {
             }
         }
         let shown = SPEEDS.iter().find(|(speed, _)| *speed == self.timeline.speed).map_or("1×", |(_, name)| *name);
-        egui::ComboBox::from_id_salt("speed of time").selected_text(shown).width(48.0).show_ui(ui, |ui| {
+        let chosen = egui::ComboBox::from_id_salt("speed of time").selected_text(shown).width(48.0);
+        let chosen = chosen.show_ui(ui, |ui| {
             for (speed, name) in SPEEDS {
                 ui.selectable_value(&mut self.timeline.speed, speed, name);
             }
         });
+        chosen.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Speed of time"));
     }
 
     /// The moment, to be typed; nothing shows all.

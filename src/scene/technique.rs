@@ -103,6 +103,12 @@ impl Technique {
         if !self.has_passes() {
             return None;
         }
+        if scene.moment.is_some() {
+            return Some("shows all times, and [time] at asks for one".to_owned());
+        }
+        if let Some(lens) = lenses.iter().find(|lens| !lens.time.is_empty()) {
+            return Some(format!("shows all times, and lens \"{}\" has operators of time", lens.name));
+        }
         for lens in &lenses {
             let name = &lens.name;
             if lens.shown().is_some() {

@@ -353,6 +353,11 @@ fn what_a_technique_cannot_do_is_refused() {
             vec![Lens { body: LensBody::Outline, ..one("sepia") }],
             "\"regions\" draws no bodies of lenses, and lens \"one\" has body = \"outline\" (\"none\" draws none)",
         ),
+        (
+            t,
+            vec![Lens { time: vec![veduta::lens::epoch::set_to(veduta::time::Moment::FIRST)], ..one("sepia") }],
+            "\"three-pass\" shows all times, and lens \"one\" has operators of time",
+        ),
         (r, vec![one("eraser")], "\"regions\" hides nothing, and lens \"one\" has the effect \"eraser\""),
         (r, vec![one("blur")], "\"regions\" has no neighbourhood filters, and lens \"one\" has the effect \"blur\""),
         (t, vec![one("wireframe")], "\"three-pass\" draws no lines, and lens \"one\" has the effect \"wireframe\""),

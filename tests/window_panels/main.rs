@@ -1,6 +1,7 @@
 //! The window without a display: every panel is asked by what assistive technology reads of it, as somebody would use it.
 
 mod lenses;
+mod timeline;
 mod values;
 
 use std::{
