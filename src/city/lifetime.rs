@@ -297,7 +297,10 @@ mod tests {
     use super::*;
     use crate::city::{Attribute, CityObject, ObjectClass};
 
-    fn city(objects: &[(Option<u32>, &[(&str, serde_json::Value)])]) -> CityModel {
+    /// The number of its parent, and its attributes.
+    type Bare<'a> = (Option<u32>, &'a [(&'a str, serde_json::Value)]);
+
+    fn city(objects: &[Bare]) -> CityModel {
         let mut model = CityModel::default();
         for (i, (parent, attributes)) in objects.iter().enumerate() {
             let first = model.attributes.len() as u32;

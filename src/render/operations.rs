@@ -105,6 +105,17 @@ pub struct SceneTime {
     pub lifetimes: Vec<Arc<Lifetimes>>,
 }
 
+/// What operations are made of beside lenses and cities.
+#[derive(Clone, Copy, Debug)]
+pub struct Beside<'a> {
+    /// What effects read of each lens.
+    pub tables: &'a LensTables,
+    /// When objects are there.
+    pub time: &'a SceneTime,
+    /// Pixels of a point, which some parameters are given in.
+    pub point_px: f64,
+}
+
 /// A neighbourhood filter of a frame: one for all uses that would make the same image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Filter {
@@ -171,18 +182,16 @@ pub struct Operations {
 impl Operations {
     /// The operations of the context's effects and of the enabled lenses that have a volume; `visible[i]` says
     /// whether lens i has one. `tests`: of the volumes of all lenses, in the picture and from the sun, and what leaves their combinations have. Thematic colours are
-    /// those of the objects of `models`, the scene's own city first, by the first one's scale. `tables`:
-    /// what effects read of each lens. `point_px`: pixels of a point, which some parameters are given in.
+    /// those of the objects of `models`, the scene's own city first, by the first one's scale.
     pub fn new(
         context: &[EffectUse],
         lenses: &[Lens],
         visible: &[bool],
         tests: AllTests,
         models: &[&CityModel],
-        tables: &LensTables,
-        time: &SceneTime,
-        point_px: f64,
+        beside: &Beside,
     ) -> Result<Self, ChoiceError> {
+        let Beside { tables, time, point_px } = *beside;
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(tests.sun), ..Self::default() };
         out.add_time(time, visible);

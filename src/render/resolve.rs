@@ -18,7 +18,7 @@ use crate::{
         light::{LEAST_SHADOW_SIZE, casts_shadows, occludes_sky, to_sun},
         moved::Moved,
         occlusion::Occlusion,
-        operations::{AllTests, LensTables, MOST_FILTERS, Operations, SceneTime},
+        operations::{AllTests, Beside, LensTables, MOST_FILTERS, Operations, SceneTime},
         parts::whole,
         placed_region::Leaf,
         placement::Eye,
@@ -253,8 +253,9 @@ impl Surroundings<'_> {
         let footprints = footprints::tables(scene, self.city, self.footprints, contents, volumes);
         let (style, tables) = (&scene.style, LensTables { sights, footprints });
         let models = self.models(contents);
-        let (time, point_px) = (self.time(scene, contents)?, scene.figure.point_px());
-        let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &tables, &time, point_px);
+        let time = self.time(scene, contents)?;
+        let beside = Beside { tables: &tables, time: &time, point_px: scene.figure.point_px() };
+        let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &beside);
         let mut operations = made.map_err(|error| ResolveError::Scene(error.to_string()))?;
         operations.contents.clone_from(&contents.uses);
         Ok(operations)

@@ -15,7 +15,7 @@ use crate::{
         frame::{Backend, FrameInput},
         furniture::{self, Furniture},
         moved::Moved,
-        operations::{LensTables, Operations, SceneTime},
+        operations::{Beside, LensTables, Operations, SceneTime},
         own_sprites::OwnSprites,
         pass::{Inputs, list},
         placed_region::{Leaf, PlacedRegion},
@@ -95,8 +95,8 @@ impl Asked {
         let present = [self.effect.is_some()];
         let city = CityModel::default();
         let tests = Default::default();
-        Operations::new(&[], &[lens], &present, tests, &[&city], &LensTables::default(), &SceneTime::default(), 1.0)
-            .expect("operations")
+        let beside = Beside { tables: &LensTables::default(), time: &SceneTime::default(), point_px: 1.0 };
+        Operations::new(&[], &[lens], &present, tests, &[&city], &beside).expect("operations")
     }
 
     fn volumes(&self) -> Vec<LensVolume> {
