@@ -2,6 +2,7 @@
 // that any lens shows; then what time operators read; then the lifetimes, that of no object first.
 
 const LIFETIMES: u32 = 2u;
+const LIFETIME_WORDS: u32 = 3u;     // of an object: its first moment and its last, then a bit for each lens that may hold some of it
 const EARLIEST: u32 = 4u;
 const LATEST: u32 = 6u;
 
@@ -14,6 +15,15 @@ fn scene_moment() -> Moment {
     return moment_in(0u);
 }
 
+fn lifetime_place(object: u32) -> u32 {
+    return object_values[LIFETIMES] + object_values[LIFETIME_WORDS] * (object + 1u);
+}
+
+// Whether a lens, by its bit, may hold some of an object.
+fn may_hold(object: u32, bit: u32) -> bool {
+    return ((object_values[lifetime_place(object) + 4u + (bit >> 5u)] >> (bit & 31u)) & 1u) == 1u;
+}
+
 // From its first moment up to its last, which is not of it.
 struct Lifetime {
     begin: Moment,
@@ -21,7 +31,7 @@ struct Lifetime {
 }
 
 fn lifetime_of(object: u32) -> Lifetime {
-    let first = object_values[LIFETIMES] + 4u * (object + 1u);
+    let first = lifetime_place(object);
     return Lifetime(moment_in(first), moment_in(first + 2u));
 }
 

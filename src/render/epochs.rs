@@ -2,11 +2,14 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use rustc_hash::FxHashMap;
+
 use crate::{
     city::{
         CityModel,
         lifetime::{Dating, Lifetime, Lifetimes},
     },
+    geom::Aabb,
     lens::{Lens, Operator, epoch::TIMELESS},
     render::hiding::Presence,
     scene::Scene,
@@ -62,25 +65,56 @@ impl Epochs {
         moment
     }
 
-    /// Of each object whether it is there at the moments that show.
-    pub fn presence(&self, lifetimes: &Lifetimes) -> Vec<Presence> {
-        let Some([first, last]) = self.range else { return vec![Presence::Always; lifetimes.of.len()] };
-        let of = |lifetime: &Lifetime| {
-            let begins = lifetime.begin.unwrap_or(Moment::FIRST);
-            // Where no moment shows, all is there.
-            let is_apart = lifetime.is_never || begins > last || lifetime.end.is_some_and(|end| end <= first);
-            match lifetime.holds(Some(first)) && lifetime.holds(Some(last)) {
-                true => Presence::Always,
-                false if is_apart && self.moment.is_some() => Presence::Never,
-                false => Presence::Sometimes,
+    /// The lenses with operators, ascending: a lens' place among them is its bit.
+    pub fn lenses(&self) -> Vec<u32> {
+        let mut lenses: Vec<u32> = self.operators.iter().map(|(lens, _)| *lens).collect();
+        lenses.dedup();
+        lenses
+    }
+
+    /// Of each object whether it is there at the moments that may show of it: those of all combinations of the lenses that may hold some of it.
+    pub fn presence(&self, lifetimes: &Lifetimes, met: &MetLenses) -> Vec<Presence> {
+        let mut moments: FxHashMap<&[u32], Option<Vec<Option<Moment>>>> = FxHashMap::default();
+        let of = |(lifetime, object): (&Lifetime, usize)| {
+            if *lifetime == Lifetime::ALWAYS {
+                return Presence::Always;
+            }
+            let lenses = met.of(object);
+            let Some(moments) = moments.entry(lenses).or_insert_with(|| self.moments_of(lenses)) else {
+                return Presence::Sometimes;
+            };
+            let there = moments.iter().filter(|moment| lifetime.holds(**moment)).count();
+            match there {
+                0 => Presence::Never,
+                all if all == moments.len() => Presence::Always,
+                _ => Presence::Sometimes,
             }
         };
-        lifetimes.of.iter().map(of).collect()
+        lifetimes.of.iter().zip(0..).map(of).collect()
+    }
+
+    /// The moments of all combinations of some lenses, each once; `None`: too many.
+    fn moments_of(&self, lenses: &[u32]) -> Option<Vec<Option<Moment>>> {
+        let mut moments = vec![self.moment];
+        for (bit, steps) in self.operators.chunk_by(|a, b| a.0 == b.0).enumerate() {
+            if !has_bit(lenses, bit) {
+                continue;
+            }
+            let after = |at: &Option<Moment>| steps.iter().fold(*at, |at, (_, operator)| operator.apply(at));
+            let more: Vec<Option<Moment>> = moments.iter().map(after).collect();
+            moments.extend(more);
+            moments.sort_unstable();
+            moments.dedup();
+            if moments.len() > MOST_MOMENTS {
+                return None;
+            }
+        }
+        Some(moments)
     }
 
     /// What effects read of objects, from its first word on: `lib/lifetime.wgsl` says how it lies. Then, for each operator, where its words
     /// begin. `lifetimes`: of the scene's own city, then of contents, as their objects follow each other.
-    pub fn words(&self, lifetimes: &[Arc<Lifetimes>]) -> (Vec<u32>, Vec<u32>) {
+    pub fn words(&self, lifetimes: &[Arc<Lifetimes>], met: &MetLenses) -> (Vec<u32>, Vec<u32>) {
         let of = |moment: Option<Moment>| moment.map_or(TIMELESS, Moment::words);
         let [first, last] = self.range.map_or([None; 2], |range| range.map(Some));
         let mut words = Vec::new();
@@ -93,11 +127,57 @@ impl Epochs {
             begins.push(words.len() as u32);
             words.extend(&operator.words);
         }
-        words[2] = words.len() as u32;
+        (words[2], words[3]) = (words.len() as u32, 4 + met.words as u32);
+        // No object may be anywhere.
         words.extend(Lifetime::ALWAYS.words());
-        words.extend(lifetimes.iter().flat_map(|lifetimes| &lifetimes.of).flat_map(|lifetime| lifetime.words()));
+        words.resize(words.len() + met.words, u32::MAX);
+        for (lifetime, object) in lifetimes.iter().flat_map(|lifetimes| &lifetimes.of).zip(0..) {
+            words.extend(lifetime.words());
+            words.extend(met.of(object));
+        }
         (words, begins)
     }
+}
+
+/// Moments that an object is asked about one by one, at most.
+const MOST_MOMENTS: usize = 64;
+
+/// Which lenses with operators may hold some of which objects: a bit each, by their boxes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MetLenses {
+    /// Words of an object.
+    words: usize,
+    /// Those of all objects of the scene's own city, as they are counted.
+    of: Vec<u32>,
+    /// Those of all others: all lenses.
+    all: Vec<u32>,
+}
+
+impl MetLenses {
+    /// Of objects with these boxes, and of the boxes of each lens' volumes; `None`: such a lens may hold any. Without boxes of objects all may be
+    /// anywhere.
+    pub fn new(objects: Option<&[Aabb]>, lenses: &[Option<Vec<Aabb>>]) -> Self {
+        let words = lenses.len().div_ceil(32);
+        let bit_of = |(lens, met): (usize, bool)| (lens / 32, u32::from(met) << (lens % 32));
+        let mut of = vec![0; words * objects.map_or(0, <[Aabb]>::len)];
+        for (own, bounds) in of.chunks_mut(words.max(1)).zip(objects.unwrap_or_default()) {
+            let meets =
+                |boxes: &Option<Vec<Aabb>>| boxes.as_ref().is_none_or(|boxes| boxes.iter().any(|b| b.meets(bounds)));
+            for (word, bit) in lenses.iter().map(meets).enumerate().map(bit_of) {
+                own[word] |= bit;
+            }
+        }
+        Self { words, of, all: vec![u32::MAX; words] }
+    }
+
+    /// The words of an object.
+    pub fn of(&self, object: usize) -> &[u32] {
+        self.of.get(object * self.words..(object + 1) * self.words).unwrap_or(&self.all)
+    }
+}
+
+fn has_bit(words: &[u32], bit: usize) -> bool {
+    words.get(bit / 32).is_some_and(|word| word >> (bit % 32) & 1 == 1)
 }
 
 /// Whether a lens acts in the space of the picture.

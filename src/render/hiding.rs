@@ -71,7 +71,7 @@ impl Reach {
 }
 
 /// How far from its place a fragment may be taken to be that is so far from the eye, metres.
-fn rounded(distance: f64) -> f64 {
+pub(super) fn rounded(distance: f64) -> f64 {
     ROUNDED_M + ROUNDED * distance
 }
 

@@ -104,6 +104,7 @@ impl Invokers {
                     first_volume: volumes[epoch.lens as usize],
                     volumes: lens.volumes.len() as u32,
                     parameters: epoch.words,
+                    weight: epoch.bit,
                     border: lens.border.map_or(0, |b| b.parameters + 1),
                     ..layout::Invoker::default()
                 };

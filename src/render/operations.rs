@@ -10,7 +10,12 @@ use crate::{
         effect::{default_of, in_floats, ramp},
         thematic::ThematicScale,
     },
-    render::{epochs::Epochs, hiding::Presence, palette, placed_region::Members},
+    render::{
+        epochs::{Epochs, MetLenses},
+        hiding::Presence,
+        palette,
+        placed_region::Members,
+    },
     scene::sized::POINTS,
     shader::{
         self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
@@ -94,6 +99,8 @@ pub struct EpochUse {
     pub handler: u32,
     /// Where its words begin among the object values.
     pub words: u32,
+    /// The bit of its lens in what is known of objects.
+    pub bit: u32,
 }
 
 /// When objects are there, and what lenses do to that.
@@ -103,6 +110,8 @@ pub struct SceneTime {
     pub epochs: Epochs,
     /// Of the scene's own city, then of contents.
     pub lifetimes: Vec<Arc<Lifetimes>>,
+    /// Which lenses may hold which objects.
+    pub met: MetLenses,
 }
 
 /// What operations are made of beside lenses and cities.
@@ -237,12 +246,15 @@ impl Operations {
         if !self.timed {
             return;
         }
-        self.presence = time.lifetimes.first().map_or_else(Vec::new, |own| time.epochs.presence(own)).into();
-        let (words, begins) = time.epochs.words(&time.lifetimes);
+        self.presence = time.lifetimes.first().map_or_else(Vec::new, |own| time.epochs.presence(own, &time.met)).into();
+        let (words, begins) = time.epochs.words(&time.lifetimes, &time.met);
+        let lenses = time.epochs.lenses();
         self.object_values = words;
         let operators = time.epochs.operators.iter().zip(begins);
-        let uses =
-            operators.map(|((lens, operator), words)| EpochUse { lens: *lens, handler: operator.handler, words });
+        let uses = operators.map(|((lens, operator), words)| {
+            let bit = lenses.binary_search(lens).unwrap_or_default() as u32;
+            EpochUse { lens: *lens, handler: operator.handler, words, bit }
+        });
         self.epochs = uses.filter(|used| visible.get(used.lens as usize) == Some(&true)).collect();
         self.uber.timed = true;
         self.uber.epochs = each_once(time.epochs.operators.iter().map(|(_, operator)| operator.handler).collect());
@@ -345,7 +357,7 @@ impl Operations {
         let epoch = |e: &EpochUse| {
             let is_empty = empty.binary_search(&e.lens).is_ok();
             let lens = place(e.lens).filter(|_| !is_empty)?;
-            Some(PlanEpoch { lens, handler: e.handler, words: e.words })
+            Some(PlanEpoch { lens, handler: e.handler, words: e.words, bit: e.bit })
         };
         let epochs = self.epochs.iter().filter_map(epoch).collect();
         let timed = self.timed;

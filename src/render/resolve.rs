@@ -12,8 +12,9 @@ use crate::{
         content_cities::{self, ContentCities, SceneContents},
         deformations::{self, KnownDeformations, SceneDeformations},
         displayed::{LastDisplayed, Stands},
-        epochs::{Epochs, KnownLifetimes},
+        epochs::{Epochs, KnownLifetimes, MetLenses},
         footprints::{self, OwnFootprints},
+        hiding::rounded,
         lens_volumes::{LensVolumes, Tools, volumes_of},
         light::{LEAST_SHADOW_SIZE, casts_shadows, occludes_sky, to_sun},
         moved::Moved,
@@ -123,7 +124,9 @@ impl Surroundings<'_> {
         let contents = self.contents(drawn, &eye, &view, samples, &volumes, known)?;
         contents.add_to_members(&mut volumes, self.city, &deformations.moved);
         let sights = self.sights(scene, &eye, &deformations.moved, known);
-        let mut operations = self.operations(scene, &volumes, tests, &contents, sights)?;
+        // What is moved may be anywhere.
+        let seen = deformations.moved.is_nothing().then_some(&view);
+        let mut operations = self.operations(scene, &volumes, tests, &contents, sights, seen)?;
         add_members(&mut operations, &mut volumes, &self.models(&contents));
         check_counts(&operations, &volumes)?;
         let (own, moved) = (self.reach(), &deformations.moved);
@@ -245,6 +248,7 @@ impl Surroundings<'_> {
         tests: AllTests,
         contents: &SceneContents,
         sights: Vec<Vec<u32>>,
+        seen: Option<&View>,
     ) -> Result<Operations, ResolveError> {
         let mut present = vec![false; scene.lenses.len()];
         for volume in volumes {
@@ -253,7 +257,8 @@ impl Surroundings<'_> {
         let footprints = footprints::tables(scene, self.city, self.footprints, contents, volumes);
         let (style, tables) = (&scene.style, LensTables { sights, footprints });
         let models = self.models(contents);
-        let time = self.time(scene, contents)?;
+        let mut time = self.time(scene, contents)?;
+        time.met = self.met(&time.epochs, volumes, seen);
         let beside = Beside { tables: &tables, time: &time, point_px: scene.figure.point_px() };
         let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &beside);
         let mut operations = made.map_err(|error| ResolveError::Scene(error.to_string()))?;
@@ -272,6 +277,36 @@ impl Surroundings<'_> {
         Ok(Some(lifetimes.of.iter().map(|lifetime| !lifetime.holds(scene.moment)).collect()))
     }
 
+    /// Which lenses with time operators may hold some of which objects, as they stand in a view; without one any may hold any.
+    fn met(&self, epochs: &Epochs, volumes: &[LensVolume], view: Option<&View>) -> MetLenses {
+        let boxes_of = |lens: u32| -> Option<Vec<Aabb>> {
+            let own = volumes.iter().filter(|volume| volume.lens == lens);
+            let bounds = |volume: &LensVolume| {
+                let is_bounded = volume.region.is_bounded() && !volume.everywhere;
+                let view = view.filter(|_| is_bounded)?;
+                let bounds = volume.bounds_of_border(view);
+                let farthest = bounds.center().distance(view.camera.eye) + 0.5 * bounds.size().length();
+                // As far as places of fragments are rounded.
+                let off = rounded(farthest);
+                Some(Aabb { min: bounds.min - off, max: bounds.max + off })
+            };
+            own.map(bounds).collect()
+        };
+        let lenses: Vec<Option<Vec<Aabb>>> = epochs.lenses().into_iter().map(boxes_of).collect();
+        let objects = view.filter(|_| !lenses.is_empty()).map(|_| self.object_boxes());
+        MetLenses::new(objects.as_deref(), &lenses)
+    }
+
+    /// The box around what is shown of each object, metres; empty without any.
+    fn object_boxes(&self) -> Vec<Aabb> {
+        let mut boxes = vec![Aabb::EMPTY; self.model.objects.len()];
+        for geometry in self.city.geometries.iter().map(|&g| &self.model.geometries[g as usize]) {
+            let own = &mut boxes[geometry.object as usize];
+            *own = own.union(geometry.bounds);
+        }
+        boxes
+    }
+
     /// Which moments show, and when objects are there.
     fn time(&self, scene: &Scene, contents: &SceneContents) -> Result<SceneTime, ResolveError> {
         let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;
@@ -285,7 +320,7 @@ impl Surroundings<'_> {
             self.lifetimes.of(model, dating).unwrap_or_else(|_| Arc::new(Lifetimes::undated(model)))
         };
         let lifetimes = std::iter::once(own).chain(contents.models.iter().map(of_content)).collect();
-        Ok(SceneTime { epochs, lifetimes })
+        Ok(SceneTime { epochs, lifetimes, met: MetLenses::default() })
     }
 }
 

@@ -43,7 +43,7 @@ pub(super) fn specialised(
     for steps in plan.epochs.chunk_by(|a, b| a.lens == b.lens) {
         let lens = steps[0].lens;
         let is_here = is_held(plan, lens, ClassTest::Inside, &classes, &interest);
-        let _ = writeln!(text, "    if {is_here} {{");
+        let _ = writeln!(text, "    if may_hold(fragment.object, {}u) && {is_here} {{", steps[0].bit);
         for step in steps {
             let handler = &handlers[step.handler as usize];
             let _ = writeln!(text, "        moment = {};", applied(handler, &format!("{}u", step.words)));
@@ -70,9 +70,12 @@ pub(super) fn uber(numbers: &[u32], handlers: &[EffectDefinition], place: &str, 
 fn moment_at({place}) -> Moment {{
     var moment = scene_moment();
     for (var i = table.epochs.x; i < table.epochs.y; i++) {{
-        let by = invoker(i);
-        if {runs} {{
-            moment = after(moment, by);
+        // Of an invoker that does not act no more is read.
+        if may_hold(fragment.object, invokers[i].slots & 65535u) {{
+            let by = invoker(i);
+            if {runs} {{
+                moment = after(moment, by);
+            }}
         }}
         if i + 1u == table.epochs.y {{
             break;

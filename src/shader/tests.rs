@@ -75,7 +75,8 @@ fn contents_of(seed: usize) -> Vec<PlanContent> {
 /// What the two lenses do to the moment: nothing, or all that there is.
 fn epochs_of(seed: usize) -> Vec<PlanEpoch> {
     let all = (0..).zip(handlers()).filter(|(_, handler)| handler.kind == EffectKind::Epoch).map(|(number, _)| number);
-    let of_lens = |lens: u32| all.clone().map(move |handler| PlanEpoch { lens, handler, words: 8 + handler % 9 });
+    let of_lens =
+        |lens: u32| all.clone().map(move |handler| PlanEpoch { lens, handler, words: 8 + handler % 9, bit: 31 + lens });
     match seed % 3 {
         1 => of_lens(0).chain(of_lens(1)).collect(),
         _ => Vec::new(),

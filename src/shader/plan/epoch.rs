@@ -9,4 +9,6 @@ pub struct PlanEpoch {
     pub handler: u32,
     /// Where its words begin among the object values.
     pub words: u32,
+    /// The bit of its lens in what is known of objects: whether it may hold some of one.
+    pub bit: u32,
 }
