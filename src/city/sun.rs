@@ -135,6 +135,10 @@ mod tests {
         let sun = golden.sun_without_air(moment("2003-10-17T12:30:30"), -7.0).expect("the sun");
         assert!((sun.azimuth.to_degrees() - 194.340_24).abs() < 0.001, "{}", sun.azimuth.to_degrees());
         assert!((90.0 - sun.elevation.to_degrees() - 50.1277).abs() < 0.001, "{}", sun.elevation.to_degrees());
+        // North of the model is not always true north.
+        let turned = Site { north: 0.1, ..golden };
+        let aside = sun.azimuth - turned.sun_without_air(moment("2003-10-17T12:30:30"), -7.0).expect("the sun").azimuth;
+        assert!((aside - 0.1).abs() < 1e-9, "{aside}");
         // The air lifts it, near the horizon by half a degree.
         let low = moment("2003-10-17T17:15:00");
         let lift = |site: &Site| {

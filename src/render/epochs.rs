@@ -225,3 +225,69 @@ impl KnownLifetimes {
         Ok(lifetimes)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::lens::{Handled, Parameter, epoch::set_to};
+
+    fn year(year: i64) -> Option<Moment> {
+        Moment::of_year(year)
+    }
+
+    fn shift(by: &str) -> Handled {
+        Handled { handler: "shift".into(), parameters: [("by".to_owned(), Parameter::Text(by.into()))].into() }
+    }
+
+    /// A scene in 1900: 1650 in lens 0, ten years later in lens 1.
+    fn epochs() -> Epochs {
+        let lens = |name: &str, step: Handled| Lens {
+            time: vec![step],
+            ..Lens::plain(name, crate::lens::kind::TimeLens::default(), [0.0; 3])
+        };
+        let set = set_to(year(1650).expect("a year"));
+        let scene = Scene {
+            moment: year(1900),
+            lenses: vec![lens("then", set), lens("later", shift("10 years"))],
+            ..Scene::default()
+        };
+        Epochs::new(&scene).expect("moments")
+    }
+
+    #[test]
+    fn lenses_act_bottom_to_top() {
+        let epochs = epochs();
+        let at = |inside: &[u32]| epochs.moment_at(|lens| inside.contains(&lens));
+        assert_eq!([at(&[]), at(&[0]), at(&[1]), at(&[0, 1])], [1900, 1650, 1910, 1660].map(year));
+        assert_eq!(epochs.range, year(1650).zip(year(1910)).map(|(first, last)| [first, last]));
+    }
+
+    #[test]
+    fn an_object_is_asked_of_the_lenses_that_may_hold_it() {
+        let cube = |x: f64| Aabb { min: DVec3::new(x, 0.0, 0.0), max: DVec3::new(x + 1.0, 1.0, 1.0) };
+        let boxes: Vec<Aabb> = [0.0, 10.0, 20.0].map(cube).into();
+        let met = MetLenses::new(Some(&boxes), &[Some(vec![cube(0.5), cube(9.5)]), Some(vec![cube(10.5)])]);
+        assert_eq!(
+            [0, 1, 2, 3].map(|object| met.of(object)[0]),
+            [0b01, 0b11, 0b00, u32::MAX],
+            "of others any may hold some"
+        );
+        assert_eq!(MetLenses::new(Some(&boxes), &[None]).of(2), [1], "a lens without an end");
+        let of =
+            |begin: i64, end: Option<i64>| Lifetime { begin: year(begin), end: end.and_then(year), is_never: false };
+        let presence =
+            |lifetime: Lifetime| epochs().presence(&Lifetimes { of: vec![lifetime; 3], ..Lifetimes::default() }, &met);
+        use Presence::{Always, Never, Sometimes};
+        assert_eq!(presence(of(1600, None)), [Always, Always, Always]);
+        assert_eq!(presence(of(1700, None)), [Sometimes, Sometimes, Always]);
+        assert_eq!(presence(of(1655, Some(1900))), [Never, Sometimes, Never], "1660 shows where both lenses are");
+        assert_eq!(presence(of(1905, Some(1911))), [Never, Sometimes, Never]);
+        assert_eq!(presence(of(1650, Some(1651))), [Sometimes, Sometimes, Never]);
+        assert_eq!(presence(Lifetime::NEVER), [Never; 3]);
+        let timeless = Epochs { moment: None, ..epochs() };
+        let found = timeless.presence(&Lifetimes { of: vec![Lifetime::NEVER; 3], ..Lifetimes::default() }, &met);
+        assert_eq!(found, [Sometimes, Sometimes, Always], "without a moment all is there");
+    }
+}

@@ -205,7 +205,7 @@ pub const PROTOTYPES: [Prototype; 13] = [
     Prototype {
         kind: EffectKind::Epoch,
         word: "epoch",
-        name: "epoch",
+        name: "time operator",
         stage: Stage::Place,
         default_mode: Mode::Local,
         subject: ("moment", "Moment"),

@@ -13,8 +13,8 @@ use veduta::{
     },
     scene::{CitySpec, Scene},
     shader::{
-        EffectDefinition, EffectKind, Mode,
-        effect::{AskedBy, replace},
+        EffectDefinition, Mode,
+        effect::{AskedBy, ParameterDefinition, ParameterKind, replace},
         effect_file::checked,
     },
 };
@@ -93,7 +93,7 @@ pub fn effects() -> Kind {
         if let Some(studio) = &mut drawing.0 {
             studio.renderer.forget_shaders();
         }
-        drawing.draw(&scene_of(&using(effect.kind, &effect.name)), Backend::Specialised)
+        drawing.draw(&scene_of(&using(&effect)), Backend::Specialised)
     };
     let mut files = effect::files();
     for file in &mut files {
@@ -106,13 +106,28 @@ pub fn effects() -> Kind {
 }
 
 /// A lens that has an effect do something.
-fn using(kind: EffectKind, name: &str) -> String {
+fn using(effect: &EffectDefinition) -> String {
+    let name = &effect.name;
     let lens = |kind: &str, shape: &str, rest: String| {
         format!(
             "[[lens]]\nname = \"l\"\nkind = \"{kind}\"\nshape = {{ kind = \"{shape}\", center = [0, 0, 10], size = [60, 60, 40] }}\n{rest}\n"
         )
     };
-    match kind.prototype().asked_by {
+    // What must be given, of those that time operators alone have.
+    let given = |p: &ParameterDefinition| {
+        let value = match p.kind {
+            ParameterKind::Moment => "1900",
+            ParameterKind::Span | ParameterKind::Unit => "1 day",
+            ParameterKind::Clock => "12:00",
+            _ => return None,
+        };
+        p.is_required().then(|| format!(", {} = \"{value}\"", p.name))
+    };
+    match effect.kind.prototype().asked_by {
+        AskedBy::Times => {
+            let given: String = effect.parameters.iter().filter_map(given).collect();
+            format!("[time]\nat = \"1900\"\n{}", lens("time", "box", format!("time = [{{ op = \"{name}\"{given} }}]")))
+        }
         AskedBy::Steps => lens("deformation", "box", format!("deform = [{{ kind = \"{name}\" }}]")),
         AskedBy::Shapes => lens("color", name, "effects = [\"sepia\"]".into()),
         AskedBy::Contents => lens("content", "box", format!("content = {{ transform = {{ kind = \"{name}\" }} }}")),
