@@ -253,7 +253,7 @@ fn figure() -> Result<(), Failed> {
     let city = Path::new(env!("CARGO_MANIFEST_DIR")).join("citydata/square.city.json");
     fs::copy(city, at("town.city.json"))?;
     let mut desk = Desk::open(&folder.0, &[])?;
-    desk.until_title("builtin:square — Veduta")?;
+    desk.until_title("builtin:old-town — Veduta")?;
 
     let open = ("ctrl+o", "Open city files, a scene or effects");
     desk.names(open, "town.city.json")?;

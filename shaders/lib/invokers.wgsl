@@ -24,7 +24,7 @@ struct PackedInvoker {
 struct InvokerTable {
     ranges: vec4u,              // from up to (not included): what hides; what lines go through
     tiles: vec4u,               // x: tiles of the picture in a row; y, z: contents of lenses, from up to; w: 1 where there are layers
-    epochs: vec4u,              // x, y: time operators, from up to
+    epochs: vec4u,              // x: of time operators by the bits of lenses, y: how many bits there are
 }
 
 // A uniform, as it always was: with none at this place Mesa 22.3 takes others for each other, and crashes.

@@ -2,7 +2,7 @@
 // that any lens shows; then what time operators read; then the lifetimes, that of no object first.
 
 const LIFETIMES: u32 = 2u;
-const LIFETIME_WORDS: u32 = 3u;     // of an object: its first moment and its last, then a bit for each lens that may hold some of it
+const LIFETIME_WORDS: u32 = 3u;     // of an object: its first moment and its last, a bit for each lens that may hold some of it, and all of it
 const EARLIEST: u32 = 4u;
 const LATEST: u32 = 6u;
 
@@ -19,9 +19,19 @@ fn lifetime_place(object: u32) -> u32 {
     return object_values[LIFETIMES] + object_values[LIFETIME_WORDS] * (object + 1u);
 }
 
-// Whether a lens, by its bit, may hold some of an object.
-fn may_hold(object: u32, bit: u32) -> bool {
-    return ((object_values[lifetime_place(object) + 4u + (bit >> 5u)] >> (bit & 31u)) & 1u) == 1u;
+// How many words of bits there are of an object, for either kind.
+fn words_of_lenses() -> u32 {
+    return (object_values[LIFETIME_WORDS] - 4u) / 2u;
+}
+
+// The bits of 32 lenses that may hold some of an object.
+fn lenses_that_may(object: u32, word: u32) -> u32 {
+    return object_values[lifetime_place(object) + 4u + word];
+}
+
+// Those among them that surely hold all of it.
+fn lenses_that_surely_do(object: u32, word: u32) -> u32 {
+    return object_values[lifetime_place(object) + 4u + words_of_lenses() + word];
 }
 
 // From its first moment up to its last, which is not of it.

@@ -33,7 +33,7 @@ use crate::{
 };
 
 /// The city that is shown where no other is named.
-pub const BUILTIN: &str = "builtin:square";
+pub const BUILTIN: &str = crate::city::builtin::FIRST;
 /// Files that are remembered.
 const MOST_RECENT: usize = 10;
 

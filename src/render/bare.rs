@@ -67,7 +67,7 @@ pub(super) fn draw(
     let (frustum, whole) = (view.frustum(1.0), Details::default());
     for section in &city.buffers.sections {
         let seen = CityBuffers::visible(section.chunks.iter().filter(|c| whole.show(c)), &frustum, view.camera.eye);
-        let (runs, _) = draws_of(seen.iter().map(|s| s.chunk));
+        let (runs, _) = draws_of(seen.iter().map(|s| s.chunk.range.clone()));
         pass.set_vertex_buffer(0, section.vertices.slice(..));
         pass.set_index_buffer(section.indices.slice(..), wgpu::IndexFormat::Uint32);
         runs.into_iter().for_each(|run| pass.draw_indexed(run, 0, 0..1));

@@ -55,8 +55,10 @@ pub struct Chunk {
     pub is_around: bool,
     /// Whether it is plain ground that gives way to a deformation of the whole city: around it, and where it only fills gaps.
     pub gives_way: bool,
-    /// The objects that it is of, ascending, each once; plain ground is of none.
-    pub objects: Arc<[u32]>,
+    /// Whose its triangles are, run by run.
+    pub runs: Arc<[ObjectRun]>,
+    /// Whether the runs say where among the section's indices they end; what was moved lies in another order.
+    pub has_run_ends: bool,
 }
 
 impl Chunk {
@@ -64,6 +66,15 @@ impl Chunk {
     pub fn has_terrain(&self) -> bool {
         self.cell == NO_CELL
     }
+}
+
+/// Triangles of one object that follow each other in an index buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ObjectRun {
+    /// Where they end among the section's indices.
+    pub end: u32,
+    /// Their object; [`NONE`]: plain ground.
+    pub object: u32,
 }
 
 /// Which fragments are translucent by material and texture.
@@ -311,14 +322,19 @@ impl Gathered {
 
     /// Cuts the runs into chunks: where another cell begins, and where one has more than a chunk; a run longer than that is cut by triangles.
     fn chunks(&self) -> Vec<Chunk> {
-        let objects = |from: usize, to: usize| -> Arc<[u32]> {
+        let runs = |from: usize, to: usize| -> Arc<[ObjectRun]> {
             let first = self.runs.partition_point(|run| run.end <= from);
             let begins = |run: usize| run.checked_sub(1).map_or(0, |before| self.runs[before].end);
-            let own = (first..self.runs.len()).take_while(|&run| begins(run) < to);
-            let mut objects: Vec<u32> = own.map(|run| self.runs[run].object).filter(|object| *object != NONE).collect();
-            objects.sort_unstable();
-            objects.dedup();
-            objects.into()
+            let own = (first..self.runs.len()).take_while(|&run| begins(run) < to).map(|run| &self.runs[run]);
+            let mut runs: Vec<ObjectRun> = Vec::new();
+            for run in own {
+                let end = run.end.min(to) as u32;
+                match runs.last_mut().filter(|last| last.object == run.object) {
+                    Some(last) => last.end = end,
+                    None => runs.push(ObjectRun { end, object: run.object }),
+                }
+            }
+            runs.into()
         };
         let position = |i: u32| {
             let vertex = &self.weld.vertices[i as usize];
@@ -335,7 +351,8 @@ impl Gathered {
             translucency: self.group.translucency,
             is_around,
             gives_way,
-            objects: objects(from, to),
+            runs: runs(from, to),
+            has_run_ends: true,
         };
         let mut chunks: Vec<Chunk> = Vec::new();
         let (mut start, mut bounds, mut done, mut of) = (0, Aabb::EMPTY, 0, (NO_CELL, 0, false, false));
@@ -536,15 +553,15 @@ pub struct SeenChunk<'a> {
     pub distance: f64,
 }
 
-/// Few draws for many chunks: neighbours in the index buffer become one. And how many triangles they hold.
-pub fn draws_of<'a>(chunks: impl Iterator<Item = &'a Chunk>) -> (Vec<Draw>, u64) {
+/// Few draws for many runs of an index buffer: neighbours become one. And how many triangles they hold.
+pub fn draws_of(ranges: impl Iterator<Item = Draw>) -> (Vec<Draw>, u64) {
     let mut draws: Vec<Draw> = Vec::new();
     let mut indices = 0;
-    for Chunk { range, .. } in chunks {
+    for range in ranges {
         indices += u64::from(range.end - range.start);
         match draws.last_mut() {
             Some(last) if last.end == range.start => last.end = range.end,
-            _ => draws.push(range.clone()),
+            _ => draws.push(range),
         }
     }
     (draws, indices / 3)

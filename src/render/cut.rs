@@ -1,5 +1,7 @@
 //! What is hidden in one frame, and by which programs the parts of the city that it may reach are drawn.
 
+use std::ops::Range;
+
 use glam::DVec2;
 
 use crate::{
@@ -7,7 +9,7 @@ use crate::{
         city::Chunk,
         eye::{PictureTile, view_uniform},
         frame::FrameInput,
-        hiding::Hiding,
+        hiding::{Hiding, Told},
         layout,
         own_sprites::OwnSprites,
         volume::LensVolume,
@@ -23,6 +25,15 @@ pub(super) struct Cut {
     pub hiding: Hiding,
     /// What.
     pub plan: Plan,
+}
+
+/// What chunks are told apart for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    /// Whether they are of a content of lenses.
+    pub is_content: bool,
+    /// Whether triangles must follow each other as they lie: of coplanar faces the later one wins.
+    pub keeps_order: bool,
 }
 
 /// What is hidden from the main view, and from sun and sky; `None` where no hiding lens is in view.
@@ -57,19 +68,22 @@ impl Cuts {
 }
 
 impl Cut {
-    /// Chunks it leaves alone, and those it may reach (`true`): all of a content. Those of which it leaves nothing opaque are left
-    /// out, and empty parts.
-    pub fn parts<'a>(
-        cut: Option<&Self>,
-        view: &View,
-        chunks: &[&'a Chunk],
-        is_content: bool,
-    ) -> Vec<(Vec<&'a Chunk>, bool)> {
-        let touches = |chunk: &Chunk| cut.is_some_and(|cut| cut.hiding.touches(chunk, view));
-        let is_reached = |chunk: &&&Chunk| is_content || touches(chunk);
-        let (mut reached, whole): (Vec<&Chunk>, Vec<&Chunk>) = chunks.iter().partition(is_reached);
-        reached.retain(|chunk| !cut.is_some_and(|cut| cut.hiding.clears(chunk, view)));
-        [(whole, false), (reached, true)].into_iter().filter(|(part, _)| !part.is_empty()).collect()
+    /// Of chunks the runs of indices that it leaves alone, and those that it may reach (`true`): all of a content. Those of which it leaves
+    /// nothing opaque are left out, and empty parts.
+    pub fn parts(cut: Option<&Self>, view: &View, chunks: &[&Chunk], asked: Asked) -> Vec<(Vec<Range<u32>>, bool)> {
+        let mut told = Told::default();
+        for chunk in chunks {
+            match cut {
+                None => told.add(&chunk.range, asked.is_content),
+                Some(cut) if asked.is_content => {
+                    if !cut.hiding.clears(chunk, view) {
+                        told.add(&chunk.range, true);
+                    }
+                }
+                Some(cut) => cut.hiding.tell_apart(chunk, view, asked.keeps_order, &mut told),
+            }
+        }
+        [(told.whole, false), (told.reached, true)].into_iter().filter(|(part, _)| !part.is_empty()).collect()
     }
 
     /// The shapes of its lenses.

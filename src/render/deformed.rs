@@ -363,6 +363,7 @@ fn sections_of(met: &Met, made: &Made) -> Vec<Section> {
             .map(|(chunk, (range, bounds))| Chunk {
                 range: 3 * range.start..3 * range.end,
                 bounds: *bounds,
+                has_run_ends: false,
                 ..chunk.clone()
             })
             .collect(),

@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use glam::DVec3;
 use rustc_hash::FxHashMap;
 
 use crate::{
@@ -9,9 +10,9 @@ use crate::{
         CityModel,
         lifetime::{Dating, Lifetime, Lifetimes},
     },
-    geom::Aabb,
+    geom::{Aabb, Volume},
     lens::{Lens, Operator, epoch::TIMELESS},
-    render::hiding::Presence,
+    render::hiding::{Presence, rounded},
     scene::Scene,
     time::Moment,
 };
@@ -74,7 +75,7 @@ impl Epochs {
 
     /// Of each object whether it is there at the moments that may show of it: those of all combinations of the lenses that may hold some of it.
     pub fn presence(&self, lifetimes: &Lifetimes, met: &MetLenses) -> Vec<Presence> {
-        let mut moments: FxHashMap<&[u32], Option<Vec<Option<Moment>>>> = FxHashMap::default();
+        let mut moments: FxHashMap<Met, Option<Vec<Option<Moment>>>> = FxHashMap::default();
         let of = |(lifetime, object): (&Lifetime, usize)| {
             if *lifetime == Lifetime::ALWAYS {
                 return Presence::Always;
@@ -93,16 +94,19 @@ impl Epochs {
         lifetimes.of.iter().zip(0..).map(of).collect()
     }
 
-    /// The moments of all combinations of some lenses, each once; `None`: too many.
-    fn moments_of(&self, lenses: &[u32]) -> Option<Vec<Option<Moment>>> {
+    /// The moments of all combinations of the lenses that may hold some of an object, each once; `None`: too many.
+    fn moments_of(&self, lenses: Met) -> Option<Vec<Option<Moment>>> {
         let mut moments = vec![self.moment];
         for (bit, steps) in self.operators.chunk_by(|a, b| a.0 == b.0).enumerate() {
-            if !has_bit(lenses, bit) {
+            if !has_bit(lenses.may, bit) {
                 continue;
             }
             let after = |at: &Option<Moment>| steps.iter().fold(*at, |at, (_, operator)| operator.apply(at));
             let more: Vec<Option<Moment>> = moments.iter().map(after).collect();
-            moments.extend(more);
+            match has_bit(lenses.surely, bit) {
+                true => moments = more,
+                false => moments.extend(more),
+            }
             moments.sort_unstable();
             moments.dedup();
             if moments.len() > MOST_MOMENTS {
@@ -127,13 +131,16 @@ impl Epochs {
             begins.push(words.len() as u32);
             words.extend(&operator.words);
         }
-        (words[2], words[3]) = (words.len() as u32, 4 + met.words as u32);
-        // No object may be anywhere.
-        words.extend(Lifetime::ALWAYS.words());
-        words.resize(words.len() + met.words, u32::MAX);
-        for (lifetime, object) in lifetimes.iter().flat_map(|lifetimes| &lifetimes.of).zip(0..) {
+        (words[2], words[3]) = (words.len() as u32, 4 + 2 * met.words as u32);
+        let mut put = |lifetime: &Lifetime, met: Met| {
             words.extend(lifetime.words());
-            words.extend(met.of(object));
+            words.extend(met.may);
+            words.extend(met.surely);
+        };
+        // No object may be anywhere.
+        put(&Lifetime::ALWAYS, met.anywhere());
+        for (lifetime, object) in lifetimes.iter().flat_map(|lifetimes| &lifetimes.of).zip(0..) {
+            put(lifetime, met.of(object));
         }
         (words, begins)
     }
@@ -142,37 +149,78 @@ impl Epochs {
 /// Moments that an object is asked about one by one, at most.
 const MOST_MOMENTS: usize = 64;
 
-/// Which lenses with operators may hold some of which objects: a bit each, by their boxes.
+/// Which lenses with operators may hold some of which objects, and which hold all of them: a bit each, by the boxes of objects.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MetLenses {
-    /// Words of an object.
+    /// Words of an object, for either.
     words: usize,
-    /// Those of all objects of the scene's own city, as they are counted.
+    /// Those of all objects of the scene's own city, as they are counted: first those that may hold some of it.
     of: Vec<u32>,
-    /// Those of all others: all lenses.
-    all: Vec<u32>,
+    /// Those of all others: any lens may, none surely does.
+    others: Vec<u32>,
+}
+
+/// The lenses of an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Met<'a> {
+    /// Those that may hold some of it.
+    pub may: &'a [u32],
+    /// Those among them that hold all of it.
+    pub surely: &'a [u32],
+}
+
+/// Where a lens with operators is.
+#[derive(Clone, Debug, Default)]
+pub struct LensPlaces {
+    /// The boxes around its volumes, with what places of fragments may be rounded by; `None`: it may hold anything.
+    pub around: Option<Vec<Aabb>>,
+    /// Those of its volumes that are convex and end at once, which are told apart by their shapes alone.
+    pub convex: Vec<Volume>,
+    /// From where they are seen: the farther off, the more places are rounded.
+    pub eye: DVec3,
+}
+
+impl LensPlaces {
+    fn may_hold(&self, bounds: &Aabb) -> bool {
+        self.around.as_ref().is_none_or(|boxes| boxes.iter().any(|b| b.meets(bounds)))
+    }
+
+    fn surely_holds(&self, bounds: &Aabb) -> bool {
+        let is_deep =
+            |volume: &Volume, corner: DVec3| volume.signed_distance(corner) <= -rounded(corner.distance(self.eye));
+        let holds = |volume: &Volume| bounds.corners().into_iter().all(|corner| is_deep(volume, corner));
+        !bounds.is_empty() && self.convex.iter().any(holds)
+    }
 }
 
 impl MetLenses {
-    /// Of objects with these boxes, and of the boxes of each lens' volumes; `None`: such a lens may hold any. Without boxes of objects all may be
-    /// anywhere.
-    pub fn new(objects: Option<&[Aabb]>, lenses: &[Option<Vec<Aabb>>]) -> Self {
+    /// Of objects with these boxes, and of lenses. Without boxes of objects all may be anywhere.
+    pub fn new(objects: Option<&[Aabb]>, lenses: &[LensPlaces]) -> Self {
         let words = lenses.len().div_ceil(32);
-        let bit_of = |(lens, met): (usize, bool)| (lens / 32, u32::from(met) << (lens % 32));
-        let mut of = vec![0; words * objects.map_or(0, <[Aabb]>::len)];
-        for (own, bounds) in of.chunks_mut(words.max(1)).zip(objects.unwrap_or_default()) {
-            let meets =
-                |boxes: &Option<Vec<Aabb>>| boxes.as_ref().is_none_or(|boxes| boxes.iter().any(|b| b.meets(bounds)));
-            for (word, bit) in lenses.iter().map(meets).enumerate().map(bit_of) {
-                own[word] |= bit;
+        let mut of = vec![0; 2 * words * objects.map_or(0, <[Aabb]>::len)];
+        for (own, bounds) in of.chunks_mut((2 * words).max(1)).zip(objects.unwrap_or_default()) {
+            for (lens, places) in lenses.iter().enumerate().filter(|(_, places)| places.may_hold(bounds)) {
+                let bit = 1 << (lens % 32);
+                own[lens / 32] |= bit;
+                if places.surely_holds(bounds) {
+                    own[words + lens / 32] |= bit;
+                }
             }
         }
-        Self { words, of, all: vec![u32::MAX; words] }
+        Self { words, of, others: [vec![u32::MAX; words], vec![0; words]].concat() }
     }
 
-    /// The words of an object.
-    pub fn of(&self, object: usize) -> &[u32] {
-        self.of.get(object * self.words..(object + 1) * self.words).unwrap_or(&self.all)
+    /// Those of an object.
+    pub fn of(&self, object: usize) -> Met<'_> {
+        let own = self.of.get(2 * object * self.words..2 * (object + 1) * self.words).unwrap_or(&self.others);
+        let (may, surely) = own.split_at(self.words);
+        Met { may, surely }
+    }
+
+    /// Those of what may be anywhere.
+    fn anywhere(&self) -> Met<'_> {
+        let (may, surely) = self.others.split_at(self.words);
+        Met { may, surely }
     }
 }
 
@@ -228,10 +276,11 @@ impl KnownLifetimes {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
-    use crate::lens::{Handled, Parameter, epoch::set_to};
+    use crate::{
+        geom::shape::Sphere,
+        lens::{Handled, Parameter, epoch::set_to},
+    };
 
     fn year(year: i64) -> Option<Moment> {
         Moment::of_year(year)
@@ -268,13 +317,14 @@ mod tests {
     fn an_object_is_asked_of_the_lenses_that_may_hold_it() {
         let cube = |x: f64| Aabb { min: DVec3::new(x, 0.0, 0.0), max: DVec3::new(x + 1.0, 1.0, 1.0) };
         let boxes: Vec<Aabb> = [0.0, 10.0, 20.0].map(cube).into();
-        let met = MetLenses::new(Some(&boxes), &[Some(vec![cube(0.5), cube(9.5)]), Some(vec![cube(10.5)])]);
+        let at = |around: Vec<Aabb>| LensPlaces { around: Some(around), ..LensPlaces::default() };
+        let met = MetLenses::new(Some(&boxes), &[at(vec![cube(0.5), cube(9.5)]), at(vec![cube(10.5)])]);
         assert_eq!(
-            [0, 1, 2, 3].map(|object| met.of(object)[0]),
+            [0, 1, 2, 3].map(|object| met.of(object).may[0]),
             [0b01, 0b11, 0b00, u32::MAX],
             "of others any may hold some"
         );
-        assert_eq!(MetLenses::new(Some(&boxes), &[None]).of(2), [1], "a lens without an end");
+        assert_eq!(MetLenses::new(Some(&boxes), &[LensPlaces::default()]).of(2).may, [1], "a lens without an end");
         let of =
             |begin: i64, end: Option<i64>| Lifetime { begin: year(begin), end: end.and_then(year), is_never: false };
         let presence =
@@ -286,8 +336,17 @@ mod tests {
         assert_eq!(presence(of(1905, Some(1911))), [Never, Sometimes, Never]);
         assert_eq!(presence(of(1650, Some(1651))), [Sometimes, Sometimes, Never]);
         assert_eq!(presence(Lifetime::NEVER), [Never; 3]);
+        // The first lens holds all of the last object: what shows there is 1650 alone.
+        let sphere = Volume::Sphere(Sphere { center: DVec3::new(20.0, 0.0, 0.0), radius: 3.0 });
+        let met =
+            MetLenses::new(Some(&boxes), &[LensPlaces { convex: vec![sphere], ..LensPlaces::default() }, at(vec![])]);
+        assert_eq!([0, 1, 2, 3].map(|object| met.of(object).surely[0]), [0, 0, 1, 0]);
+        let presence =
+            |lifetime: Lifetime| epochs().presence(&Lifetimes { of: vec![lifetime; 3], ..Lifetimes::default() }, &met);
+        assert_eq!(presence(of(1600, Some(1800))), [Sometimes, Sometimes, Always]);
+        assert_eq!(presence(of(1700, None)), [Sometimes, Sometimes, Never]);
         let timeless = Epochs { moment: None, ..epochs() };
         let found = timeless.presence(&Lifetimes { of: vec![Lifetime::NEVER; 3], ..Lifetimes::default() }, &met);
-        assert_eq!(found, [Sometimes, Sometimes, Always], "without a moment all is there");
+        assert_eq!(found, [Sometimes, Sometimes, Never], "without a moment all is there, but where a lens sets one");
     }
 }

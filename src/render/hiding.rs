@@ -3,7 +3,7 @@
 //! A pipeline that discards costs early depth tests, so only chunks that a hiding lens may reach are drawn by one
 //! (architecture, decision 3).
 
-use std::sync::Arc;
+use std::{ops::Range, sync::Arc};
 
 use glam::DVec2;
 
@@ -11,7 +11,7 @@ use crate::{
     geom::{Aabb, Volume, shape::Sphere},
     lens::Class,
     render::{
-        city::{Chunk, Translucency},
+        city::{Chunk, ObjectRun, Translucency},
         operations::{Operations, Translucent},
         volume::{LensVolume, projected_box},
     },
@@ -76,7 +76,7 @@ pub(super) fn rounded(distance: f64) -> f64 {
 }
 
 /// The volume by whose shape alone pixels tell what is inside, if it is convex.
-fn convex(volume: &LensVolume) -> Option<&Volume> {
+pub(super) fn convex(volume: &LensVolume) -> Option<&Volume> {
     volume.region.volume().filter(|shape| shape.is_convex() && volume.sprite.is_none())
 }
 
@@ -171,6 +171,26 @@ pub enum Presence {
     Never,
 }
 
+/// Runs of an index buffer that are drawn.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Told {
+    /// Of which nothing is hidden.
+    pub whole: Vec<Range<u32>>,
+    /// Of which something may be.
+    pub reached: Vec<Range<u32>>,
+}
+
+impl Told {
+    /// Adds a run, to the last one if it follows that.
+    pub fn add(&mut self, range: &Range<u32>, is_reached: bool) {
+        let own = if is_reached { &mut self.reached } else { &mut self.whole };
+        match own.last_mut().filter(|last| last.end == range.start) {
+            Some(last) => last.end = range.end,
+            None => own.push(range.clone()),
+        }
+    }
+}
+
 impl Hiding {
     /// Of all hiding effects of the context and of the lenses that `is_active`, and of the contents of these, seen from the
     /// main view.
@@ -224,13 +244,38 @@ impl Hiding {
 
     /// Whether no object of a chunk is there at any moment that shows.
     fn is_gone(&self, chunk: &Chunk) -> bool {
-        let is_never = |object: &u32| self.presence_of(*object) == Presence::Never;
-        !chunk.objects.is_empty() && chunk.objects.iter().all(is_never)
+        let is_never = |run: &ObjectRun| self.presence_of(run.object) == Presence::Never;
+        !chunk.runs.is_empty() && chunk.runs.iter().all(is_never)
     }
 
     /// Whether some object of a chunk comes and goes.
     fn comes_and_goes(&self, chunk: &Chunk) -> bool {
-        self.presence.is_some() && chunk.objects.iter().any(|object| self.presence_of(*object) != Presence::Always)
+        self.presence.is_some() && chunk.runs.iter().any(|run| self.presence_of(run.object) != Presence::Always)
+    }
+
+    /// Tells what of a chunk, of the scene's own city, is left alone from what may be reached; what is surely gone, or translucent, is neither.
+    /// Objects that come and go are told apart where nothing but that hides them, and where triangles need not follow each other as they lie.
+    pub fn tell_apart(&self, chunk: &Chunk, view: &View, keeps_order: bool, told: &mut Told) {
+        if self.clears(chunk, view) {
+            return;
+        }
+        let acts = self.hidden.iter().any(|reach| reach.meets(&chunk.bounds, view)) || self.may_clear(chunk, view);
+        if !self.comes_and_goes(chunk) || !chunk.has_run_ends || keeps_order {
+            told.add(&chunk.range, acts || self.comes_and_goes(chunk));
+            return;
+        }
+        let mut start = chunk.range.start;
+        for run in chunk.runs.iter() {
+            let end = run.end.min(chunk.range.end);
+            if end > start {
+                match self.presence_of(run.object) {
+                    Presence::Never => {}
+                    Presence::Always => told.add(&(start..end), acts),
+                    Presence::Sometimes => told.add(&(start..end), true),
+                }
+                start = end;
+            }
+        }
     }
 
     fn presence_of(&self, object: u32) -> Presence {
@@ -331,7 +376,7 @@ mod tests {
             let hiding = hiding(&shape, terrain, &view);
             let bounds = Aabb { min: low, max: low + size.abs() };
             let cell = if has_terrain { NO_CELL } else { 0 };
-            let chunk = Chunk { range: 0..3, bounds, cell, details: 1, translucency: Translucency::None, is_around: false, gives_way: false, objects: Arc::from([]) };
+            let chunk = Chunk { range: 0..3, bounds, cell, details: 1, translucency: Translucency::None, is_around: false, gives_way: false, runs: Arc::from([]), has_run_ends: true };
             let volume = shape.volume().expect("a volume");
             let acts = terrain || !has_terrain;
             let corners = bounds.corners().into_iter();

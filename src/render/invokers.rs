@@ -45,6 +45,7 @@ pub struct Invokers {
     hides: [u32; 2],
     lines: [u32; 2],
     contents: [u32; 2],
+    /// Where the invokers of time operators stand by the bits of lenses, and how many bits there are.
     epochs: [u32; 2],
     /// Whether something is seen through.
     has_layers: bool,
@@ -104,14 +105,23 @@ impl Invokers {
                     first_volume: volumes[epoch.lens as usize],
                     volumes: lens.volumes.len() as u32,
                     parameters: epoch.words,
-                    weight: epoch.bit,
                     border: lens.border.map_or(0, |b| b.parameters + 1),
                     ..layout::Invoker::default()
                 };
                 invoker.packed()
             }));
         }
-        out.epochs = [first, out.all.len() as u32];
+        let epochs = hiding.or(lining).map_or(&[][..], |plan| &plan.epochs);
+        let bits = epochs.iter().map(|epoch| epoch.bit + 1).max().unwrap_or(0);
+        out.epochs = [out.all.len() as u32, bits];
+        // As the table has them: where the invokers of a lens begin, and where they end.
+        let mut of_lenses = vec![layout::PackedInvoker::default(); bits as usize];
+        for (i, epoch) in (first..).zip(epochs) {
+            let own = &mut of_lenses[epoch.bit as usize];
+            own.place = if own.call == 0 { i } else { own.place };
+            own.call = i + 1;
+        }
+        out.all.extend(of_lenses);
         out.inside_of.resize(out.all.len(), None);
         let [context, lenses] = plans;
         let rules = |is_one: &dyn Fn(Scope) -> bool| -> Vec<Step> {

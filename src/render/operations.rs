@@ -302,6 +302,13 @@ impl Operations {
         Uber { haze, masks, clear_materials, ..self.uber.clone() }.layering(shader::handlers())
     }
 
+    /// Whether no lens of the scene does anything to how places look that are there: they take away, or show another moment.
+    pub fn looks_like_context(&self) -> bool {
+        let hides = |o: &Operation| shader::handlers()[o.effect as usize].kind == EffectKind::Hide;
+        let is_of_lens = |o: &&Operation| o.lens.is_some();
+        self.bodies.is_empty() && self.contents.is_empty() && self.list.iter().filter(is_of_lens).all(hides)
+    }
+
     /// Whether a lens of the scene has own content, in whatever frame.
     pub fn may_show_contents(&self) -> bool {
         self.uber.contents

@@ -38,10 +38,10 @@ pub(super) struct PictureParts {
 }
 
 impl PictureParts {
-    /// Those of a picture of this size.
-    pub fn new(seen: &[SeenVolume], filters: &[Filter], size: [u32; 2]) -> Self {
+    /// Those of a picture of this size; `looked_at`: the lenses, ascending, of those seen that do anything to how places look.
+    pub fn new(seen: &[SeenVolume], looked_at: &[u32], filters: &[Filter], size: [u32; 2]) -> Self {
         let (mut mesh, whole) = (Mesh::default(), PictureTile::whole(size));
-        let [outside, inside] = match part_of(seen.iter()) {
+        let [outside, inside] = match part_of(seen.iter().filter(|v| looked_at.binary_search(&v.lens).is_ok())) {
             Some(part) => [vec![(mesh.add_beyond(part, size), whole)], mesh.add(part, size, [1, 1])],
             None => [vec![(mesh.all(), whole)], Vec::new()],
         };

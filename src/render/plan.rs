@@ -189,7 +189,7 @@ impl<'a> FramePlan<'a> {
             radius: light::radius_of(&facts.bounds),
             fade: facts.fade,
             numbers: LensNumbers::new(input, &seen.volumes, &requests, own_sprites),
-            parts: PictureParts::new(&seen.volumes, &plans.filters, input.tile.size),
+            parts: PictureParts::new(&seen.volumes, &plans.looked_at, &plans.filters, input.tile.size),
             light,
             sun,
             sky,
@@ -230,7 +230,7 @@ impl<'a> FramePlan<'a> {
     /// Whether lists of lenses are narrowed to what each tile shows: of what is opaque, by the uber back end.
     pub fn narrows(&self) -> bool {
         let is_uber = self.input.technique == Technique::Accumulate;
-        self.settings.narrows_lists && is_uber && self.plans.is_long() && self.plans.layering.is_none()
+        self.settings.narrows_lists && is_uber && self.plans.looks_at_many() && self.plans.layering.is_none()
     }
 
     /// The view of the picture, as shaders read it.

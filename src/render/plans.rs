@@ -31,6 +31,8 @@ pub(super) struct Plans {
     pub layering: Option<Plan>,
     /// Lenses in view, in the order of the plans, and where.
     pub seen: Vec<u32>,
+    /// Those of them that do anything to how places look that are there, ascending.
+    pub looked_at: Vec<u32>,
     pub parts: Vec<ScreenBound>,
     /// The boxes in which each acts as *inside*, as [`LensVolume::room`](super::volume::LensVolume::room) has them.
     pub rooms: Vec<[DVec3; 2]>,
@@ -60,6 +62,9 @@ impl Plans {
         let layering = whole.layering(handlers());
         let mut numbers: Vec<u32> = seen.iter().map(|v| v.lens).collect();
         numbers.dedup();
+        let is_looked_at =
+            |(i, _): &(u32, &u32)| input.technique != Technique::Accumulate || whole.is_looked_at(*i, handlers());
+        let looked_at = (0..).zip(&numbers).filter(is_looked_at).map(|(_, number)| *number).collect();
         let of_lens = || seen.chunk_by(|a, b| a.lens == b.lens);
         let room = |volumes: &[SeenVolume]| {
             let each = volumes.iter().map(|v| input.volumes[v.index].room(&input.view));
@@ -83,6 +88,7 @@ impl Plans {
             lining,
             layering,
             seen: numbers,
+            looked_at,
             context,
             lenses,
             regions,
@@ -104,6 +110,15 @@ impl Plans {
     /// Whether it would be too long, written out.
     pub fn is_long(&self) -> bool {
         self.lenses.volumes() as usize > MOST_WRITTEN_OUT
+    }
+
+    /// Whether so many lenses do something to how places look.
+    pub fn looks_at_many(&self) -> bool {
+        let of = |(i, number): (u32, &u32)| match self.looked_at.binary_search(number) {
+            Ok(_) => self.lenses.volumes_of(i).1.len(),
+            Err(_) => 0,
+        };
+        (0..).zip(&self.seen).map(of).sum::<usize>() > MOST_WRITTEN_OUT
     }
 
     /// The uses of filters, each with the number of the image that it gets.

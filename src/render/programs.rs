@@ -56,7 +56,10 @@ impl Programs {
     pub fn uber(input: &FrameInput, plans: &Plans, cuts: &Cuts, made: Made) -> Self {
         let Made { has_shadows, clear_materials } = made;
         let (haze, masks) = (input.haze_per_radius() > 0.0, input.wants_masks());
-        let shading = Program::Uber(input.operations.uber(haze, masks, clear_materials));
+        let shading = match input.operations.looks_like_context() && !masks {
+            true => Program::Specialised(plans.context.clone()),
+            false => Program::Uber(input.operations.uber(haze, masks, clear_materials)),
+        };
         let [picture, sun] = input.operations.uber_hiding(clear_materials).map(|uber| uber.map(Program::Uber));
         let layering = input.operations.uber_layering(haze, masks, clear_materials);
         let layering = layering.filter(|_| plans.layering.is_some());

@@ -3,6 +3,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use crate::{
     city::{CityModel, lifetime::Lifetimes, load::LoadOptions},
     geom::Aabb,
@@ -12,9 +14,9 @@ use crate::{
         content_cities::{self, ContentCities, SceneContents},
         deformations::{self, KnownDeformations, SceneDeformations},
         displayed::{LastDisplayed, Stands},
-        epochs::{Epochs, KnownLifetimes, MetLenses},
+        epochs::{Epochs, KnownLifetimes, LensPlaces, MetLenses},
         footprints::{self, OwnFootprints},
-        hiding::rounded,
+        hiding::{convex, rounded},
         lens_volumes::{LensVolumes, Tools, volumes_of},
         light::{LEAST_SHADOW_SIZE, casts_shadows, occludes_sky, to_sun},
         moved::Moved,
@@ -277,10 +279,10 @@ impl Surroundings<'_> {
         Ok(Some(lifetimes.of.iter().map(|lifetime| !lifetime.holds(scene.moment)).collect()))
     }
 
-    /// Which lenses with time operators may hold some of which objects, as they stand in a view; without one any may hold any.
+    /// Which lenses with time operators may hold some of which objects, or hold all of them, as they stand in a view; without one any may hold any.
     fn met(&self, epochs: &Epochs, volumes: &[LensVolume], view: Option<&View>) -> MetLenses {
+        let own = |lens: u32| volumes.iter().filter(move |volume| volume.lens == lens);
         let boxes_of = |lens: u32| -> Option<Vec<Aabb>> {
-            let own = volumes.iter().filter(|volume| volume.lens == lens);
             let bounds = |volume: &LensVolume| {
                 let is_bounded = volume.region.is_bounded() && !volume.everywhere;
                 let view = view.filter(|_| is_bounded)?;
@@ -290,9 +292,14 @@ impl Surroundings<'_> {
                 let off = rounded(farthest);
                 Some(Aabb { min: bounds.min - off, max: bounds.max + off })
             };
-            own.map(bounds).collect()
+            own(lens).map(bounds).collect()
         };
-        let lenses: Vec<Option<Vec<Aabb>>> = epochs.lenses().into_iter().map(boxes_of).collect();
+        let places_of = |lens: u32| {
+            let is_plain = |volume: &&LensVolume| volume.border.is_none() && !volume.everywhere;
+            let convex = own(lens).filter(is_plain).filter_map(convex).cloned().collect();
+            LensPlaces { around: boxes_of(lens), convex, eye: view.map_or(DVec3::ZERO, |view| view.camera.eye) }
+        };
+        let lenses: Vec<LensPlaces> = epochs.lenses().into_iter().map(places_of).collect();
         let objects = view.filter(|_| !lenses.is_empty()).map(|_| self.object_boxes());
         MetLenses::new(objects.as_deref(), &lenses)
     }

@@ -4,7 +4,7 @@
 //! Time operators act bottom lens first, each on the moment that shows below it (after Tiesel §4.2): `t = o_top(… o_bottom(t_scene))`. An
 //! object is there from the first moment of its lifetime up to its last, which is not of it.
 
-use std::fmt::Write as _;
+use std::{collections::BTreeSet, fmt::Write as _};
 
 use crate::shader::{
     contents::is_held,
@@ -40,10 +40,18 @@ pub(super) fn specialised(
     interest: impl Fn(u32) -> String,
 ) -> String {
     let mut text = format!("fn moment_at({place}) -> Moment {{\n    var moment = scene_moment();\n");
+    let words: BTreeSet<u32> = plan.epochs.iter().map(|epoch| epoch.bit / 32).collect();
+    for word in words {
+        let _ = writeln!(text, "    let may_{word} = lenses_that_may(fragment.object, {word}u);");
+        let _ = writeln!(text, "    let surely_{word} = lenses_that_surely_do(fragment.object, {word}u);");
+    }
     for steps in plan.epochs.chunk_by(|a, b| a.lens == b.lens) {
-        let lens = steps[0].lens;
+        let (lens, word, mask) = (steps[0].lens, steps[0].bit / 32, 1_u32 << (steps[0].bit % 32));
         let is_here = is_held(plan, lens, ClassTest::Inside, &classes, &interest);
-        let _ = writeln!(text, "    if may_hold(fragment.object, {}u) && {is_here} {{", steps[0].bit);
+        let _ = writeln!(
+            text,
+            "    if (may_{word} & {mask:#x}u) != 0u && ((surely_{word} & {mask:#x}u) != 0u || {is_here}) {{"
+        );
         for step in steps {
             let handler = &handlers[step.handler as usize];
             let _ = writeln!(text, "        moment = {};", applied(handler, &format!("{}u", step.words)));
@@ -54,7 +62,7 @@ pub(super) fn specialised(
 }
 
 /// The same from the invoker table; `runs` says whether an invoker, `by`, runs there. `handler` of an invoker is the operator's number,
-/// `parameters` where its words begin.
+/// `parameters` where its words begin. By the bits of lenses stand where their invokers begin and end.
 pub(super) fn uber(numbers: &[u32], handlers: &[EffectDefinition], place: &str, arguments: &str, runs: &str) -> String {
     let mut text = "fn after(moment: Moment, by: Invoker) -> Moment {\n    switch by.handler {\n".to_owned();
     for &number in numbers {
@@ -69,16 +77,29 @@ pub(super) fn uber(numbers: &[u32], handlers: &[EffectDefinition], place: &str, 
 
 fn moment_at({place}) -> Moment {{
     var moment = scene_moment();
-    for (var i = table.epochs.x; i < table.epochs.y; i++) {{
-        // Of an invoker that does not act no more is read.
-        if may_hold(fragment.object, invokers[i].slots & 65535u) {{
-            let by = invoker(i);
-            if {runs} {{
-                moment = after(moment, by);
+    for (var word = 0u; word < words_of_lenses(); word++) {{
+        var bits = lenses_that_may(fragment.object, word);
+        let surely = lenses_that_surely_do(fragment.object, word);
+        // Only those that may act are gone through.
+        while bits != 0u {{
+            let bit = firstTrailingBit(bits);
+            bits &= bits - 1u;
+            let number = 32u * word + bit;
+            var first = 0u;
+            var end = 0u;
+            if number < table.epochs.y {{
+                let of_lens = invokers[table.epochs.x + number];
+                first = of_lens.place;
+                end = of_lens.call;
             }}
-        }}
-        if i + 1u == table.epochs.y {{
-            break;
+            if first < end {{
+                let by = invoker(first);
+                if ((surely >> bit) & 1u) == 1u || {runs} {{
+                    for (var i = first; i < end; i++) {{
+                        moment = after(moment, invoker(i));
+                    }}
+                }}
+            }}
         }}
     }}
     return moment;

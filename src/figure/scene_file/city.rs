@@ -27,7 +27,7 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
             Kind::Texts,
             "none",
             "",
-            "City files or folders, relative to the scene file; several make one city. `${VEDUTA_DATA}` stands for the folder that variable names, `builtin:square`, `builtin:town` and `builtin:rooms` for the built-in cities.",
+            "City files or folders, relative to the scene file; several make one city. `${VEDUTA_DATA}` stands for the folder that variable names, `builtin:old-town`, `builtin:square`, `builtin:town` and `builtin:rooms` for the built-in cities.",
             "[\"city.city.json\"]",
         ),
         |city, options| {

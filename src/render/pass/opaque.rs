@@ -5,7 +5,7 @@ use crate::{
         cities::DrawnSection,
         city::{Chunk, CityBuffers, Draw as Run, Section, draws_of},
         city_facts::SectionFacts,
-        cut::Cut,
+        cut::{Asked, Cut},
         pass::{
             context::{FrameContext, Keys},
             section_kind::{GeometryKind, Normals},
@@ -247,8 +247,9 @@ fn draw_part(frame: &FrameContext, pass: &mut wgpu::RenderPass, part: &SectionPa
     let DrawnSection { city, content, offset, .. } = part.drawn;
     let facts = part.drawn.facts();
     let mut counted = Counted::NONE;
-    for (chunks, is_cut) in Cut::parts(by.map(|by| by.cut), &plan.input.view, &part.chunks, content.is_some()) {
-        let (runs, triangles) = draws_of(chunks.into_iter());
+    let asked = Asked { is_content: content.is_some(), keeps_order: part.drawn.section.kind.is_layer() };
+    for (ranges, is_cut) in Cut::parts(by.map(|by| by.cut), &plan.input.view, &part.chunks, asked) {
+        let (runs, triangles) = draws_of(ranges.into_iter());
         let program = by.filter(|_| is_cut).map(|by| by.program.clone());
         if program.is_some() {
             pass.set_bind_group(2, &groups.lenses, &[]);

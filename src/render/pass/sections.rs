@@ -180,7 +180,7 @@ impl RoundDraw<'_> {
                 }
                 pass.set_bind_group(1, &frame.groups.cut_city, &[drawn.offset; 2]);
                 pass.set_vertex_buffer(0, drawn.section.vertices.slice(..));
-                let (runs, triangles) = draws_of(chunks.into_iter());
+                let (runs, triangles) = draws_of(chunks.into_iter().map(|chunk| chunk.range.clone()));
                 draw_runs(pass, &drawn.section.indices, &runs);
                 counted += Counted { draws: runs.len() as u32, triangles };
             }

@@ -207,7 +207,7 @@ pub fn target_of<'a>(frame: &FrameContext<'a>) -> &'a Target {
 
 /// Whether lenses are shaded by this pass, and not region by region.
 fn shades_lenses(plan: &FramePlan) -> bool {
-    plan.has_lenses() && plan.plans.regions.is_none()
+    !plan.plans.looked_at.is_empty() && plan.plans.regions.is_none()
 }
 
 /// What the pass keeps.

@@ -8,7 +8,7 @@ use crate::{
         cells::Details,
         cities::DrawnSection,
         city::{Chunk, CityBuffers, SectionKind, Texels, draws_of},
-        cut::{Cut, Shapes},
+        cut::{Asked, Cut, Shapes},
         invokers::{InvokerPlans, Invokers},
         layout,
         pass::{
@@ -219,7 +219,8 @@ impl<const OF_SKY: bool> LightMap<OF_SKY> {
             pass.set_bind_group(3, image, &[]);
         }
         let mut counted = Counted::NONE;
-        for (part, is_cut) in Cut::parts(cut, view, &chunks, drawn.content.is_some()) {
+        let asked = Asked { is_content: drawn.content.is_some(), keeps_order: false };
+        for (part, is_cut) in Cut::parts(cut, view, &chunks, asked) {
             let (runs, triangles) = draws_of(part.into_iter());
             let program = by.filter(|_| is_cut).map(|by| by.program.clone());
             match program.is_some() {

@@ -9,7 +9,7 @@ use crate::{
     geom::{Aabb, Shape},
     lens::{Class, EffectUse, Lens, LensKind, LensSprite},
     render::{
-        city::{Chunk, SectionKind, Translucency},
+        city::{Chunk, ObjectRun, SectionKind, Translucency},
         city_facts::{CityFacts, SectionFacts},
         eye::PictureTile,
         frame::{Backend, FrameInput},
@@ -146,7 +146,8 @@ impl Asked {
             translucency: Translucency::None,
             is_around: false,
             gives_way: false,
-            objects: [0].into(),
+            runs: [ObjectRun { end: 36, object: 0 }].into(),
+            has_run_ends: true,
         }];
         let sections = vec![SectionFacts { kind: SectionKind::Plain, is_smooth: false, is_read: false }];
         let facts = CityFacts {

@@ -64,7 +64,7 @@ fn draw_chunks(
 ) -> Counted {
     // What is opaque is there already, so the order is free: neighbours become one draw.
     chunks.sort_unstable_by_key(|chunk| chunk.range.start);
-    let (mut runs, triangles) = draws_of(chunks.into_iter());
+    let (mut runs, triangles) = draws_of(chunks.into_iter().map(|chunk| chunk.range.clone()));
     if let Some(by) = shuffled {
         runs = runs.into_iter().flatten().step_by(3).map(|first| first..first + 3).collect();
         runs.sort_by_key(|run| rustc_hash::FxBuildHasher.hash_one([run.start, by]));

@@ -106,6 +106,17 @@ impl Plan {
         self.steps.iter().any(|s| s.blend.is_some())
     }
 
+    /// Whether one of its lenses does anything to how places look that are there: it has an effect that does, a body or a content, or is asked
+    /// for.
+    pub fn is_looked_at(&self, lens: u32, handlers: &[EffectDefinition]) -> bool {
+        let acts = |s: &Step| {
+            let is_its = matches!(s.scope, Scope::Lens(l, _) if l == lens);
+            is_its && handlers[s.effect as usize].kind != EffectKind::Hide
+        };
+        let shows = || self.contents.iter().any(|c| c.lens == lens);
+        self.masks || self.lenses[lens as usize].body.is_some() || shows() || self.steps.iter().any(acts)
+    }
+
     /// Volumes of all its lenses.
     pub fn volumes(&self) -> u32 {
         self.tests().count() as u32

@@ -96,7 +96,7 @@ impl RegionDraw<'_> {
                 set_section(self.frame, pass, drawn, key.holds_depth);
                 pass.set_bind_group(1, &groups.cut_city, &[drawn.offset; 2]);
                 pass.set_pipeline(pipelines.get(&key));
-                let (runs, triangles) = draws_of(chunks.iter().copied());
+                let (runs, triangles) = draws_of(chunks.iter().map(|chunk| chunk.range.clone()));
                 draw_corners(pass, &runs, 0, key.holds_depth);
                 counted += Counted { draws: runs.len() as u32, triangles };
             }
