@@ -90,6 +90,7 @@ impl Document {
             sun,
             time_s,
             moment,
+            time_steps,
             style,
             trajectories,
             pois,
@@ -102,7 +103,7 @@ impl Document {
         let saved = &self.saved;
         let is_set_alike = (city, sun, style, layout, figure, animation)
             == (&saved.city, &saved.sun, &saved.style, &saved.layout, &saved.figure, &saved.animation)
-            && (time_s, moment) == (&saved.time_s, &saved.moment)
+            && (time_s, moment, time_steps) == (&saved.time_s, &saved.moment, &saved.time_steps)
             && *camera_above_ground == saved.camera_above_ground;
         let has_alike = (trajectories, pois, lenses, overlays)
             == (&saved.trajectories, &saved.pois, &saved.lenses, &saved.overlays);

@@ -47,11 +47,13 @@ pub enum Undated {
     Show,
     /// They are never there.
     Hide,
+    /// They are always there by halves.
+    Ghost,
 }
 
 impl Undated {
     /// The words of scene files.
-    pub const WORDS: [(&'static str, Self); 2] = [("show", Self::Show), ("hide", Self::Hide)];
+    pub const WORDS: [(&'static str, Self); 3] = [("show", Self::Show), ("hide", Self::Hide), ("ghost", Self::Ghost)];
 }
 
 /// Which attributes say when objects are there.
@@ -72,29 +74,63 @@ pub struct Lifetime {
     pub begin: Option<Moment>,
     /// `None`: for ever.
     pub end: Option<Moment>,
-    /// Whether it is never there, whatever its ends say.
-    pub is_never: bool,
+    /// What counts.
+    pub rule: Existence,
+}
+
+/// What counts of when an object is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Existence {
+    /// Its ends.
+    Dated,
+    /// It is never there.
+    Never,
+    /// It is always there by halves.
+    Ghost,
 }
 
 impl Lifetime {
     /// Always there.
-    pub const ALWAYS: Self = Self { begin: None, end: None, is_never: false };
+    pub const ALWAYS: Self = Self { begin: None, end: None, rule: Existence::Dated };
     /// Never there.
-    pub const NEVER: Self = Self { begin: None, end: None, is_never: true };
+    pub const NEVER: Self = Self { begin: None, end: None, rule: Existence::Never };
+    /// Always there by halves.
+    pub const GHOST: Self = Self { begin: None, end: None, rule: Existence::Ghost };
+
+    /// From a moment up to another; what ends when it begins, or before, is never there.
+    pub fn of(begin: Option<Moment>, end: Option<Moment>) -> Self {
+        let is_empty = begin.zip(end).is_some_and(|(begin, end)| end <= begin);
+        Self { begin, end, rule: if is_empty { Existence::Never } else { Existence::Dated } }
+    }
+
+    /// Whether its ends count.
+    pub fn is_dated(self) -> bool {
+        self.rule == Existence::Dated
+    }
+
+    /// Whether it is always there by halves.
+    pub fn is_ghost(self) -> bool {
+        self.rule == Existence::Ghost
+    }
 
     /// Whether it is there at a moment; at none it is.
     pub fn holds(self, at: Option<Moment>) -> bool {
         let Some(at) = at else { return true };
-        !self.is_never && self.begin.is_none_or(|begin| begin <= at) && self.end.is_none_or(|end| at < end)
+        self.rule != Existence::Never
+            && self.begin.is_none_or(|begin| begin <= at)
+            && self.end.is_none_or(|end| at < end)
     }
 
     /// As shaders have it: four words, its first moment and its last.
     pub fn words(self) -> [u32; 4] {
         const EARLIEST: [u32; 2] = [i32::MIN.cast_unsigned(), 0];
         const LATEST: [u32; 2] = [i32::MAX.cast_unsigned(), 0];
-        let [begin, end] = match self.is_never {
-            true => [LATEST, EARLIEST],
-            false => [self.begin.map_or(EARLIEST, Moment::words), self.end.map_or(LATEST, Moment::words)],
+        // Nothing else begins in the middle of it.
+        const GHOST: [u32; 2] = [i32::MIN.cast_unsigned(), 1];
+        let [begin, end] = match self.rule {
+            Existence::Never => [LATEST, EARLIEST],
+            Existence::Ghost => [GHOST, LATEST],
+            Existence::Dated => [self.begin.map_or(EARLIEST, Moment::words), self.end.map_or(LATEST, Moment::words)],
         };
         [begin[0], begin[1], end[0], end[1]]
     }
@@ -238,15 +274,16 @@ impl Lifetimes {
                     out.undated += 1;
                     match dating.undated {
                         Undated::Hide if !object.class.is_ground() => Lifetime::NEVER,
+                        Undated::Ghost if !object.class.is_ground() => Lifetime::GHOST,
                         _ => Lifetime::ALWAYS,
                     }
                 }
                 _ => {
                     out.dated += 1;
                     let [begin, end] = [begin, end].map(|interval| interval.and_then(|interval| interval.begin));
-                    let is_never = begin.zip(end).is_some_and(|(begin, end)| end <= begin);
-                    out.empty += u64::from(is_never);
-                    Lifetime { begin, end, is_never }
+                    let lifetime = Lifetime::of(begin, end);
+                    out.empty += u64::from(!lifetime.is_dated());
+                    lifetime
                 }
             };
             for moment in [lifetime.begin, lifetime.end].into_iter().flatten() {
@@ -373,7 +410,7 @@ mod tests {
 
     #[test]
     fn shaders_see_the_same_ends() {
-        let exact = Lifetime { begin: year(1890), end: None, is_never: false };
+        let exact = Lifetime::of(year(1890), None);
         assert_eq!(exact.words()[..2], year(1890).expect("a year").words());
         assert_eq!(exact.words()[2..], [i32::MAX.cast_unsigned(), 0]);
         assert_eq!(Lifetime::NEVER.words(), [i32::MAX.cast_unsigned(), 0, i32::MIN.cast_unsigned(), 0]);

@@ -33,6 +33,21 @@ pub fn label(moment: Moment, dates: Option<Granularity>) -> String {
     moment.label(dates.map_or(own, |dates| own.max(dates.min(Granularity::Day))))
 }
 
+/// Moments that show together, ascending, each with how much it counts.
+type Shown = Vec<(Option<Moment>, f64)>;
+
+/// Moments of a label that are told one by one, at most.
+const MOST_TOLD: usize = 4;
+
+/// What says which moments show together: `1650 + 1750`, `1400 … 1900 (6)`; `None`: where there is one that is none.
+fn label_of(shown: &Shown, dates: Option<Granularity>) -> Option<String> {
+    let told: Vec<String> = shown.iter().map(|(at, _)| at.map(|at| label(at, dates))).collect::<Option<_>>()?;
+    Some(match &told[..] {
+        [first, .., last] if told.len() > MOST_TOLD => format!("{first} \u{2026} {last} ({})", told.len()),
+        _ => told.join(" + "),
+    })
+}
+
 /// The labels of a scene's time lenses in a picture of this size: one for each lens that shows a moment and has a body, above its middle; one for
 /// each pair of lenses that overlap, where another moment shows there.
 ///
@@ -47,15 +62,15 @@ pub fn labels(studio: &Studio, scene: &Scene, view: &View) -> Result<Vec<MomentL
     let volumes = studio.lens_volumes(scene, view.size)?;
     let is_timed = |volume: &&LensVolume| epochs.operators.iter().any(|(lens, _)| *lens == volume.lens);
     let timed: Vec<&LensVolume> = volumes.iter().filter(is_timed).collect();
-    let moment_at =
-        |place: DVec3| epochs.moment_at(|lens| timed.iter().any(|volume| volume.lens == lens && holds(volume, place)));
+    let moments_at =
+        |place: DVec3| epochs.moments_at(|lens| timed.iter().any(|volume| volume.lens == lens && holds(volume, place)));
     let mut labels: Vec<MomentLabel> = Vec::new();
     // A label of a lens stands on the top of its outline, one of two lenses above the middle of what they share.
-    let mut add = |volume: &LensVolume, bounds: &Aabb, known: &[Option<Moment>]| {
+    let mut add = |volume: &LensVolume, bounds: &Aabb, known: &[Shown]| {
         let is_whole = known.is_empty();
         let own = &scene.lenses[volume.lens as usize];
         let middle = bounds.center();
-        let moment = moment_at(middle);
+        let shown = moments_at(middle);
         let on_outline =
             || volume.box_seen(view).map(|(low, high)| DVec3::new(0.5 * (low.x + high.x), low.y.max(0.0), 1.0));
         let above = || view.pixel(middle.with_z(bounds.max.z)).or_else(|| view.pixel(middle));
@@ -63,24 +78,24 @@ pub fn labels(studio: &Studio, scene: &Scene, view: &View) -> Result<Vec<MomentL
         let is_seen = |at: &DVec3| {
             at.z > 0.0 && at.x >= 0.0 && at.y >= 0.0 && at.x < f64::from(view.size[0]) && at.y < f64::from(view.size[1])
         };
-        if own.body == LensBody::None || known.contains(&moment) {
-            return moment;
+        if own.body == LensBody::None || known.contains(&shown) {
+            return shown;
         }
-        if let (Some(then), Some(at)) = (moment, top.filter(is_seen)) {
-            labels.push(MomentLabel { text: label(then, dates), at: at.truncate(), color: own.color });
+        if let (Some(text), Some(at)) = (label_of(&shown, dates), top.filter(is_seen)) {
+            labels.push(MomentLabel { text, at: at.truncate(), color: own.color });
         }
-        moment
+        shown
     };
     let bounded = |volume: &&&LensVolume| volume.region.is_bounded() && !volume.everywhere;
     let own: Vec<&LensVolume> = timed.iter().filter(bounded).copied().collect();
-    let moments: Vec<Option<Moment>> = own.iter().map(|volume| add(volume, &volume.region.bounds(), &[])).collect();
+    let moments: Vec<Shown> = own.iter().map(|volume| add(volume, &volume.region.bounds(), &[])).collect();
     for (i, above) in own.iter().enumerate() {
         for (j, below) in own[..i].iter().enumerate() {
             let (a, b) = (above.region.bounds(), below.region.bounds());
             let shared = Aabb { min: a.min.max(b.min), max: a.max.min(b.max) };
             let is_shared = !shared.is_empty() && holds(above, shared.center()) && holds(below, shared.center());
             if is_shared && above.lens != below.lens {
-                add(above, &shared, &[moments[i], moments[j]]);
+                add(above, &shared, &[moments[i].clone(), moments[j].clone()]);
             }
         }
     }

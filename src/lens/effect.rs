@@ -13,8 +13,8 @@ use crate::{
     },
     shader::{
         effect::{
-            DefaultValue, EffectDefinition, EffectKind, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition,
-            ParameterKind, effects, find, named,
+            DefaultValue, EffectDefinition, EffectKind, Fallback, MAX_INSTANTS, MAX_LIST, MAX_RAMP,
+            ParameterDefinition, ParameterKind, effects, find, named,
         },
         effect_file::RESERVED,
     },
@@ -144,6 +144,12 @@ pub fn problem_with(kind: &ParameterKind, value: &Parameter) -> Option<String> {
             let fits = (1..=MAX_LIST).contains(&n.len()) && ascending;
             if fits { None } else { expected(&kind.describe()) }
         }
+        (ParameterKind::Instants, Parameter::Texts(t)) if (1..=MAX_INSTANTS).contains(&t.len()) => None,
+        (ParameterKind::Weights, Parameter::Numbers(n))
+            if (1..=MAX_INSTANTS).contains(&n.len()) && n.iter().all(|n| n.is_finite() && *n > 0.0) =>
+        {
+            None
+        }
         (ParameterKind::Texts, Parameter::Texts(t)) if (1..=MAX_LIST).contains(&t.len()) => None,
         (ParameterKind::Shares, Parameter::Numbers(n))
             if (1..=MAX_RAMP).contains(&n.len()) && n.iter().all(|n| (0.0..=1.0).contains(n)) =>
@@ -220,6 +226,12 @@ pub fn color_of(value: &Parameter) -> Option<Srgb> {
 
 /// Typed reading; `None` where not given or of another type.
 impl EffectUse {
+    /// A use of an effect with every parameter at its default, on what is inside.
+    pub fn new(effect: &str) -> Self {
+        let class = crate::lens::Class::default();
+        Self { effect: effect.into(), class, blend: None, weight: None, parameters: BTreeMap::new() }
+    }
+
     /// A number.
     pub fn number(&self, key: &str) -> Option<f64> {
         match self.parameters.get(key) {

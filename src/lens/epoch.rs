@@ -8,7 +8,9 @@ use std::sync::Arc;
 use crate::{
     lens::{effect_use::Parameter, handled::Handled},
     shader::{
-        effect::{AskedBy, DefaultValue, EffectDefinition, Fallback, ParameterDefinition, number_asked_by},
+        effect::{
+            AskedBy, DefaultValue, EffectDefinition, Fallback, ParameterDefinition, ParameterKind, number_asked_by,
+        },
         host::HostProgram,
     },
     time::{Interval, Moment, Span, Unit},
@@ -32,7 +34,65 @@ enum Exact {
     Ceil(Unit, Span),
     Floor(Unit, Span),
     TimeOfDay(i64),
+    Together(Vec<Instant>),
+    Ghost(Ghosts),
     Own(Arc<HostProgram>),
+}
+
+/// One of several moments that show together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// Which.
+    pub at: InstantOf,
+    /// How much it counts; those of a set count 1 together.
+    pub weight: f64,
+}
+
+/// What an instant is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InstantOf {
+    /// This moment; `None`: the one at which all is there.
+    Moment(Option<Moment>),
+    /// So much later than what is shown below.
+    Later(Span),
+}
+
+impl Instant {
+    /// The moment where another is shown below.
+    pub fn moment(&self, below: Option<Moment>) -> Option<Moment> {
+        match self.at {
+            InstantOf::Moment(at) => at,
+            InstantOf::Later(by) => below.map(|below| below.shifted(by)),
+        }
+    }
+
+    /// As shaders read it (`lib/instants.wgsl`).
+    pub fn words(&self) -> [u32; 4] {
+        match self.at {
+            InstantOf::Moment(at) => {
+                let [hour, micro] = at.map_or(TIMELESS, Moment::words);
+                [0, hour, micro, 0]
+            }
+            InstantOf::Later(by) => {
+                let [months, hours, micro] = by.words();
+                [1, months, hours, micro]
+            }
+        }
+    }
+}
+
+/// What shows by halves beside a moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ghosts {
+    /// How long what is gone fades.
+    pub past: Span,
+    /// How long before it comes what will be there is drawn in outline.
+    pub future: Span,
+}
+
+impl Ghosts {
+    /// Nothing does.
+    pub const NONE: Self = Self { past: Span::NONE, future: Span::NONE };
 }
 
 impl Operator {
@@ -61,7 +121,28 @@ impl Operator {
         Self { handler, words: moment.words().to_vec(), exact: Exact::Set(moment) }
     }
 
-    /// The moment that it makes of another.
+    /// The moments that it makes of another, each with how much it counts: together 1.
+    pub fn moments(&self, at: Option<Moment>) -> Vec<(Option<Moment>, f64)> {
+        match &self.exact {
+            Exact::Together(instants) => instants.iter().map(|own| (own.moment(at), own.weight)).collect(),
+            _ => vec![(self.apply(at), 1.0)],
+        }
+    }
+
+    /// The moments of a set; of those that make one moment, none.
+    pub fn instants(&self) -> &[Instant] {
+        match &self.exact {
+            Exact::Together(instants) => instants,
+            _ => &[],
+        }
+    }
+
+    /// What shows by halves beside the moment, where it says that.
+    pub fn ghosts(&self) -> Option<Ghosts> {
+        if let Exact::Ghost(ghosts) = self.exact { Some(ghosts) } else { None }
+    }
+
+    /// The moment that it makes of another; of several the first.
     pub fn apply(&self, at: Option<Moment>) -> Option<Moment> {
         match &self.exact {
             Exact::Set(moment) => Some(*moment),
@@ -73,6 +154,8 @@ impl Operator {
             Exact::Ceil(unit, by) => at.map(|at| at.shifted(*by).ceiled(*unit)),
             Exact::Floor(unit, by) => at.map(|at| at.shifted(*by).floored(*unit)),
             Exact::TimeOfDay(micros) => at.map(|at| at.at_time_of_day(*micros)),
+            Exact::Together(instants) => instants.first().and_then(|first| first.moment(at)),
+            Exact::Ghost(_) => at,
         }
     }
 
@@ -80,6 +163,12 @@ impl Operator {
     pub fn range(&self, of: Option<[Moment; 2]>) -> Option<[Moment; 2]> {
         match &self.exact {
             Exact::Set(moment) => Some([*moment; 2]),
+            Exact::Together(instants) => {
+                let ends = of.map_or([None; 2], |of| of.map(Some));
+                let all = ends.into_iter().flat_map(|below| instants.iter().filter_map(move |own| own.moment(below)));
+                let all: Vec<Moment> = all.collect();
+                all.iter().min().zip(all.iter().max()).map(|(first, last)| [*first, *last])
+            }
             // Of what users do nothing is known.
             Exact::Own(_) => Some([Moment::FIRST, Moment::LAST]),
             // None of the others puts an earlier moment behind a later one.
@@ -98,6 +187,8 @@ impl Operator {
 
 const SET: &str = "set";
 const LOOP: &str = "loop";
+const AGGREGATE: &str = "aggregate";
+const GHOST: &str = "ghost";
 
 /// A moment that comes again and again: `from + (clock − start) · rate mod (until − from)`.
 struct Loop {
@@ -159,6 +250,11 @@ pub fn moment_after(steps: &[Handled], at: Option<Moment>, clock_s: f64) -> Resu
     })
 }
 
+/// Whether a step makes one moment of one, with nothing beside it that is there by halves.
+pub fn makes_one_moment(step: &Handled) -> bool {
+    !matches!(step.handler.as_str(), AGGREGATE | GHOST)
+}
+
 /// The step that sets a moment.
 pub fn set_to(moment: Moment) -> Handled {
     let at = ("at".to_owned(), Parameter::Text(moment.written()));
@@ -187,6 +283,10 @@ impl Exact {
         };
         let span = |name: &str| text(name).and_then(|text| Span::parse(&text));
         let unit = || span("unit").and_then(Unit::of);
+        let length = |name: &str| match span(name)? {
+            by if by.is_back() => Err(format!("{name} must not be less than none")),
+            by => Ok(by),
+        };
         Ok(match definition.name.as_str() {
             SET => {
                 let at = text("at")?;
@@ -195,10 +295,36 @@ impl Exact {
             "shift" => Self::Shift(span("by")?),
             "ceil" => Self::Ceil(unit()?, span("by")?),
             "floor" => Self::Floor(unit()?, span("by")?),
+            AGGREGATE => Self::Together(instants_of(step)?),
+            GHOST => Self::Ghost(Ghosts { past: length("past")?, future: length("future")? }),
             "time-of-day" => Self::TimeOfDay(Span::of_clock(&text("time")?)?.micros()),
             other => return Err(format!("\"{other}\" does not run on the host")),
         })
     }
+}
+
+/// The moments of a step that shows several, and how much each counts of all.
+fn instants_of(step: &Handled) -> Result<Vec<Instant>, String> {
+    let Some(Parameter::Texts(texts)) = step.parameters.get("at") else { return Err("at is missing".to_owned()) };
+    let weights = match step.parameters.get("weights") {
+        Some(Parameter::Numbers(weights)) => weights.clone(),
+        _ => vec![1.0; texts.len()],
+    };
+    if weights.len() != texts.len() {
+        return Err(format!("weights must be {}, one for each of at, are {}", texts.len(), weights.len()));
+    }
+    let total: f64 = weights.iter().sum();
+    let one = |(text, weight): (&String, f64)| -> Result<Instant, String> {
+        let at = match Span::parse(text) {
+            Ok(by) => InstantOf::Later(by),
+            Err(_) => match Interval::parse(text)?.begin {
+                None => return Err(format!("\"{text}\" has no beginning")),
+                begin => InstantOf::Moment(begin),
+            },
+        };
+        Ok(Instant { at, weight: weight / total })
+    };
+    texts.iter().zip(weights).map(one).collect()
 }
 
 /// The text of a parameter: as given, or its default.
@@ -212,6 +338,10 @@ fn text_of(step: &Handled, parameter: &ParameterDefinition) -> Option<String> {
 
 /// A parameter as shaders read it.
 fn words_of(step: &Handled, parameter: &ParameterDefinition) -> Result<Vec<u32>, String> {
+    if parameter.kind == ParameterKind::Instants {
+        // Where they lie is told where all operators are known.
+        return Ok(vec![0, instants_of(step)?.len() as u32, 1]);
+    }
     if !parameter.kind.is_time() {
         return Ok(step.floats_of(parameter).into_iter().map(f32::to_bits).collect());
     }
@@ -312,7 +442,7 @@ mod tests {
     #[test]
     fn all_operators_of_the_program_run_on_the_host() {
         let names: Vec<&str> = asked_for(AskedBy::Times).filter(|h| !h.is_users).map(|h| h.name.as_str()).collect();
-        assert_eq!(names, [SET, "shift", "ceil", "floor", "time-of-day", LOOP]);
+        assert_eq!(names, [SET, "shift", "ceil", "floor", "time-of-day", LOOP, AGGREGATE, "ghost"]);
     }
 
     #[test]
@@ -326,6 +456,22 @@ mod tests {
         assert!(wrong("set", &[("at", "../1890")]).contains("no beginning"));
         assert!(wrong("floor", &[("unit", "-1 year")]).contains("is no unit"));
         assert!(wrong("time-of-day", &[("time", "24:00")]).contains("no time of day"));
+        assert_eq!(wrong("aggregate", &[]), "at is missing");
+        let several = |at: &[&str], weights: Option<&[f64]>| {
+            let at = ("at".to_owned(), Parameter::Texts(at.iter().map(|text| (*text).to_owned()).collect()));
+            let weights = weights.map(|weights| ("weights".to_owned(), Parameter::Numbers(weights.to_vec())));
+            let parameters = std::iter::once(at).chain(weights).collect();
+            Operator::new(&Handled { handler: "aggregate".into(), parameters }, 0.0)
+        };
+        let wrong_of = |at: &[&str], weights: &[f64]| several(at, Some(weights)).expect_err("several");
+        assert_eq!(wrong_of(&["1650", "1750"], &[1.0]), "weights must be 2, one for each of at, are 1");
+        assert!(wrong_of(&["../1650"], &[1.0]).contains("no beginning"));
+        assert!(wrong_of(&["when"], &[1.0]).contains("\"when\""));
+        assert!(wrong("ghost", &[("past", "-1 year")]).contains("less than none"));
+        let made = several(&["1650", "-10 years"], Some(&[1.0, 3.0])).expect("two moments");
+        let [year, early] = [1650, 1890].map(Moment::of_year);
+        assert_eq!(made.moments(Moment::of_year(1900)), [(year, 0.25), (early, 0.75)]);
+        assert_eq!(made.range(Moment::of_year(1900).map(|at| [at; 2])), year.zip(early).map(|(a, b)| [a, b]));
         assert!(wrong("loop", &[("begin", "1900"), ("end", "1900")]).contains("later than begin"));
         assert!(wrong("loop", &[("begin", "1900"), ("end", "1901"), ("per_second", "0 s")]).contains("more than none"));
     }

@@ -11,31 +11,52 @@ use crate::{
         lifetime::{Dating, Lifetime, Lifetimes},
     },
     geom::{Aabb, Volume},
-    lens::{Lens, Operator, epoch::TIMELESS},
+    lens::{
+        Lens, Operator,
+        epoch::{Ghosts, Instant, InstantOf, TIMELESS},
+    },
     render::hiding::{Presence, rounded},
     scene::Scene,
-    time::Moment,
+    time::{DAY, Moment, Span},
 };
 
 /// The moments of a scene.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Epochs {
-    /// The scene's own; `None`: all objects are there.
-    pub moment: Option<Moment>,
-    /// What lenses do to it, by lens, ascending; of a lens in order.
+    /// The scene's own, which show together, each with how much it counts: one, or several. `None`: all objects are there.
+    pub own: Vec<(Option<Moment>, f64)>,
+    /// What shows by halves beside them.
+    ghosts: Ghosts,
+    /// What lenses do to them, by lens, ascending; of a lens in order.
     pub operators: Vec<(u32, Operator)>,
     /// The first and the last moment that shows anywhere; `None`: none does.
     pub range: Option<[Moment; 2]>,
 }
 
+impl Default for Epochs {
+    fn default() -> Self {
+        Self { own: vec![(None, 1.0)], ghosts: Ghosts::NONE, operators: Vec::new(), range: None }
+    }
+}
+
+/// Combinations of the moments that show together, of all operators of a scene, at most: objects are asked in each.
+const MOST_COMBINATIONS: usize = 64;
+
 impl Epochs {
     /// Of a scene's enabled lenses that have a focus area; those with an overlay show their moment in it.
     ///
     /// # Errors
-    /// A step of a lens: whose, and what would be right.
+    /// A step of a lens: whose, and what would be right. More combinations of moments than can be shown together.
     pub fn new(scene: &Scene) -> Result<Self, String> {
-        let mut out = Self { moment: scene.moment, ..Self::default() };
+        let mut out = Self { own: vec![(scene.moment, 1.0)], ..Self::default() };
         let mut range = scene.moment.map(|moment| [moment; 2]);
+        for step in &scene.time_steps {
+            let operator = Operator::new(step, scene.time_s)
+                .map_err(|message| format!("[time] steps, \"{}\": {message}", step.handler))?;
+            range = operator.range(range);
+            out.own = together(&out.own, std::slice::from_ref(&operator));
+            out.ghosts = operator.ghosts().unwrap_or(out.ghosts);
+        }
         for (lens, number) in scene.lenses.iter().zip(0..).filter(|(lens, _)| is_in_space(lens)) {
             let mut own = range;
             for step in &lens.time {
@@ -47,7 +68,13 @@ impl Epochs {
             range = union(range, own);
         }
         out.range = range;
-        Ok(out)
+        match out.combinations() {
+            0..=MOST_COMBINATIONS => Ok(out),
+            count => Err(format!(
+                "aggregates: their moments make {count} combinations, at most {MOST_COMBINATIONS} would be right; take fewer moments, or fewer \
+                 lenses with several"
+            )),
+        }
     }
 
     /// Whether a moment shows anywhere.
@@ -55,15 +82,47 @@ impl Epochs {
         self.range.is_some()
     }
 
-    /// The moment that shows where the lenses that `is_inside` hold a place.
-    pub fn moment_at(&self, is_inside: impl Fn(u32) -> bool) -> Option<Moment> {
-        let mut moment = self.moment;
+    /// Whether something of cities may be there by halves: at some of several moments, or fading, or in outline.
+    pub fn is_partly(&self, lifetimes: &[Arc<Lifetimes>]) -> bool {
+        let has_ghosts = || lifetimes.iter().any(|lifetimes| lifetimes.of.iter().any(|of| of.is_ghost()));
+        let is_partly = |operator: &Operator| !operator.instants().is_empty() || operator.ghosts().is_some();
+        self.own.len() > 1
+            || self.ghosts != Ghosts::NONE
+            || self.operators.iter().any(|(_, own)| is_partly(own))
+            || has_ghosts()
+    }
+
+    /// Combinations of the moments that show together.
+    fn combinations(&self) -> usize {
+        let of_operators = self.operators.iter().map(|(_, operator)| operator.instants().len().max(1));
+        of_operators.fold(self.own.len(), usize::saturating_mul)
+    }
+
+    /// The longest of all ghosts.
+    fn reach(&self) -> Ghosts {
+        let all = self.operators.iter().filter_map(|(_, operator)| operator.ghosts());
+        let longer = |a: Span, b: Span| if a.mean_micros() < b.mean_micros() { b } else { a };
+        all.fold(self.ghosts, |a, b| Ghosts { past: longer(a.past, b.past), future: longer(a.future, b.future) })
+    }
+
+    /// Whether the edges of what is not there yet are drawn in a lens with operators that say so, or outside all (`None`).
+    pub fn draws_future(&self, lens: Option<u32>) -> bool {
+        let of_lens = |lens: u32| {
+            let own = self.operators.iter().filter(|(of, _)| *of == lens);
+            own.filter_map(|(_, operator)| operator.ghosts()).any(|ghosts| !ghosts.future.is_none())
+        };
+        lens.map_or(!self.ghosts.future.is_none(), of_lens)
+    }
+
+    /// The moments that show together where the lenses that `is_inside` hold a place, ascending, each once with how much it counts.
+    pub fn moments_at(&self, is_inside: impl Fn(u32) -> bool) -> Vec<(Option<Moment>, f64)> {
+        let mut moments = self.own.clone();
         for steps in self.operators.chunk_by(|a, b| a.0 == b.0) {
             if is_inside(steps[0].0) {
-                moment = steps.iter().fold(moment, |moment, (_, operator)| operator.apply(moment));
+                moments = steps.iter().fold(moments, |at, (_, operator)| together(&at, std::slice::from_ref(operator)));
             }
         }
-        moment
+        moments
     }
 
     /// The lenses with operators, ascending: a lens' place among them is its bit.
@@ -76,6 +135,12 @@ impl Epochs {
     /// Of each object whether it is there at the moments that may show of it: those of all combinations of the lenses that may hold some of it.
     pub fn presence(&self, lifetimes: &Lifetimes, met: &MetLenses) -> Vec<Presence> {
         let mut moments: FxHashMap<Met, Option<Vec<Option<Moment>>>> = FxHashMap::default();
+        let fades = |lifetime: &Lifetime, at: &Option<Moment>, past: Span| {
+            let gone =
+                lifetime.end.filter(|end| lifetime.is_dated() && lifetime.begin.is_none_or(|begin| begin < *end));
+            gone.zip(*at).is_some_and(|(end, at)| end <= at && at < end.shifted(past))
+        };
+        let past = self.reach().past;
         let of = |(lifetime, object): (&Lifetime, usize)| {
             if *lifetime == Lifetime::ALWAYS {
                 return Presence::Always;
@@ -86,6 +151,8 @@ impl Epochs {
             };
             let there = moments.iter().filter(|moment| lifetime.holds(**moment)).count();
             match there {
+                _ if lifetime.is_ghost() => Presence::Sometimes,
+                0 if moments.iter().any(|moment| fades(lifetime, moment, past)) => Presence::Sometimes,
                 0 => Presence::Never,
                 all if all == moments.len() => Presence::Always,
                 _ => Presence::Sometimes,
@@ -96,13 +163,19 @@ impl Epochs {
 
     /// The moments of all combinations of the lenses that may hold some of an object, each once; `None`: too many.
     fn moments_of(&self, lenses: Met) -> Option<Vec<Option<Moment>>> {
-        let mut moments = vec![self.moment];
+        let mut moments: Vec<Option<Moment>> = self.own.iter().map(|(moment, _)| *moment).collect();
         for (bit, steps) in self.operators.chunk_by(|a, b| a.0 == b.0).enumerate() {
             if !has_bit(lenses.may, bit) {
                 continue;
             }
-            let after = |at: &Option<Moment>| steps.iter().fold(*at, |at, (_, operator)| operator.apply(at));
-            let more: Vec<Option<Moment>> = moments.iter().map(after).collect();
+            let after = |at: &Option<Moment>| {
+                let each = |moments: Vec<Option<Moment>>, (_, operator): &(u32, Operator)| {
+                    let made = moments.into_iter().flat_map(|at| operator.moments(at));
+                    made.map(|(moment, _)| moment).collect()
+                };
+                steps.iter().fold(vec![*at], each)
+            };
+            let more: Vec<Option<Moment>> = moments.iter().flat_map(after).collect();
             match has_bit(lenses.surely, bit) {
                 true => moments = more,
                 false => moments.extend(more),
@@ -121,15 +194,26 @@ impl Epochs {
     pub fn words(&self, lifetimes: &[Arc<Lifetimes>], met: &MetLenses) -> (Vec<u32>, Vec<u32>) {
         let of = |moment: Option<Moment>| moment.map_or(TIMELESS, Moment::words);
         let [first, last] = self.range.map_or([None; 2], |range| range.map(Some));
+        // What is gone by less shows yet; ends of months make a few days of difference.
+        let reach = self.reach();
+        let slack = if reach.past.is_none() { Span::NONE } else { Span::of_micros(-4 * DAY) };
+        let first = first.map(|first| first.shifted(reach.past.back()).shifted(slack));
+        let any = self.own.iter().map(|(moment, _)| *moment).min().flatten();
         let mut words = Vec::new();
-        words.extend(of(self.moment));
+        words.extend(of(any));
         words.extend([0, 0]);
         words.extend(of(first));
         words.extend(of(last));
+        words.extend([self.combinations() as u32, 0]);
+        words.extend([0, self.own.len() as u32, 1]);
+        words.extend([self.ghosts.past, self.ghosts.future].iter().flat_map(|span| span.words()));
         let mut begins = Vec::new();
         for (_, operator) in &self.operators {
             begins.push(words.len() as u32);
             words.extend(&operator.words);
+        }
+        if self.is_partly(lifetimes) {
+            self.put_instants(&mut words, &begins);
         }
         (words[2], words[3]) = (words.len() as u32, 4 + 2 * met.words as u32);
         let mut put = |lifetime: &Lifetime, met: Met| {
@@ -144,6 +228,49 @@ impl Epochs {
         }
         (words, begins)
     }
+
+    /// Adds the moments of sets, that of the scene first, and the weights of their combinations: of each set the first takes turns quickest
+    /// that is first.
+    fn put_instants(&self, words: &mut Vec<u32>, begins: &[u32]) {
+        let own: Vec<Instant> =
+            self.own.iter().map(|(at, weight)| Instant { at: InstantOf::Moment(*at), weight: *weight }).collect();
+        let mut weights = vec![1.0];
+        let mut put = |set: &[Instant], place: usize, words: &mut Vec<u32>| {
+            (words[place], words[place + 2]) = (words.len() as u32, weights.len() as u32);
+            words.extend(set.iter().flat_map(Instant::words));
+            let each = set.iter().flat_map(|one| weights.iter().map(|weight| weight * one.weight));
+            weights = each.collect();
+        };
+        put(&own, SCENE_INSTANTS, words);
+        for ((_, operator), begin) in self.operators.iter().zip(begins).filter(|((_, o), _)| !o.instants().is_empty()) {
+            put(operator.instants(), *begin as usize, words);
+        }
+        words[WEIGHTS] = words.len() as u32;
+        words.extend(weights.iter().map(|weight| (*weight as f32).to_bits()));
+    }
+}
+
+/// Words in which it is said where the weights of combinations and the moments of the scene begin: as `lib/instants.wgsl` has them.
+const WEIGHTS: usize = 9;
+const SCENE_INSTANTS: usize = 10;
+
+/// What operators, one after the other, make of moments that show together: ascending, each once.
+fn together(moments: &[(Option<Moment>, f64)], operators: &[Operator]) -> Vec<(Option<Moment>, f64)> {
+    let mut moments = moments.to_vec();
+    for operator in operators {
+        let each = |(at, weight): &(Option<Moment>, f64)| {
+            let weight = *weight;
+            operator.moments(*at).into_iter().map(move |(moment, share)| (moment, weight * share))
+        };
+        moments = moments.iter().flat_map(each).collect();
+        moments.sort_by_key(|(moment, _)| *moment);
+        moments.dedup_by(|later, kept| {
+            let is_same = later.0 == kept.0;
+            kept.1 += if is_same { later.1 } else { 0.0 };
+            is_same
+        });
+    }
+    moments
 }
 
 /// Moments that an object is asked about one by one, at most.
@@ -308,8 +435,9 @@ mod tests {
     #[test]
     fn lenses_act_bottom_to_top() {
         let epochs = epochs();
-        let at = |inside: &[u32]| epochs.moment_at(|lens| inside.contains(&lens));
-        assert_eq!([at(&[]), at(&[0]), at(&[1]), at(&[0, 1])], [1900, 1650, 1910, 1660].map(year));
+        let at = |inside: &[u32]| epochs.moments_at(|lens| inside.contains(&lens));
+        let one = |at: i64| vec![(year(at), 1.0)];
+        assert_eq!([at(&[]), at(&[0]), at(&[1]), at(&[0, 1])], [1900, 1650, 1910, 1660].map(one));
         assert_eq!(epochs.range, year(1650).zip(year(1910)).map(|(first, last)| [first, last]));
     }
 
@@ -325,8 +453,7 @@ mod tests {
             "of others any may hold some"
         );
         assert_eq!(MetLenses::new(Some(&boxes), &[LensPlaces::default()]).of(2).may, [1], "a lens without an end");
-        let of =
-            |begin: i64, end: Option<i64>| Lifetime { begin: year(begin), end: end.and_then(year), is_never: false };
+        let of = |begin: i64, end: Option<i64>| Lifetime::of(year(begin), end.and_then(year));
         let presence =
             |lifetime: Lifetime| epochs().presence(&Lifetimes { of: vec![lifetime; 3], ..Lifetimes::default() }, &met);
         use Presence::{Always, Never, Sometimes};
@@ -345,7 +472,7 @@ mod tests {
             |lifetime: Lifetime| epochs().presence(&Lifetimes { of: vec![lifetime; 3], ..Lifetimes::default() }, &met);
         assert_eq!(presence(of(1600, Some(1800))), [Sometimes, Sometimes, Always]);
         assert_eq!(presence(of(1700, None)), [Sometimes, Sometimes, Never]);
-        let timeless = Epochs { moment: None, ..epochs() };
+        let timeless = Epochs { own: vec![(None, 1.0)], ..epochs() };
         let found = timeless.presence(&Lifetimes { of: vec![Lifetime::NEVER; 3], ..Lifetimes::default() }, &met);
         assert_eq!(found, [Sometimes, Sometimes, Never], "without a moment all is there, but where a lens sets one");
     }

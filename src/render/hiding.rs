@@ -158,6 +158,8 @@ pub struct Hiding {
     pub lenses: Vec<u32>,
     /// Which objects of the scene's own city come and go; `None`: none does.
     presence: Option<Arc<[Presence]>>,
+    /// Whether those that do may be there by halves.
+    partly: bool,
 }
 
 /// Whether an object is there at the moments that a scene shows.
@@ -218,6 +220,7 @@ impl Hiding {
         }
         if operations.timed {
             hiding.presence = Some(operations.presence.clone());
+            hiding.partly = operations.partly;
             hiding.lenses.extend(operations.epochs.iter().map(|e| e.lens).filter(|lens| is_active(Some(*lens))));
         }
         hiding.lenses.sort_unstable();
@@ -259,7 +262,8 @@ impl Hiding {
         if self.clears(chunk, view) {
             return;
         }
-        let acts = self.hidden.iter().any(|reach| reach.meets(&chunk.bounds, view)) || self.may_clear(chunk, view);
+        let acts =
+            self.hidden.iter().any(|reach| reach.meets(&chunk.bounds, view)) || self.lenses_may_clear(chunk, view);
         if !self.comes_and_goes(chunk) || !chunk.has_run_ends || keeps_order {
             told.add(&chunk.range, acts || self.comes_and_goes(chunk));
             return;
@@ -290,8 +294,13 @@ impl Hiding {
             && !self.hidden.iter().any(|reach| reach.meets(&chunk.bounds, view))
     }
 
-    /// Whether some fragment of a chunk may be translucent.
-    pub fn may_clear(&self, chunk: &Chunk, view: &View) -> bool {
+    /// Whether some fragment of a chunk may be translucent; `is_content`: of another city than the scene's own.
+    pub fn may_clear(&self, chunk: &Chunk, view: &View, is_content: bool) -> bool {
+        self.lenses_may_clear(chunk, view) || (self.partly && (is_content || self.comes_and_goes(chunk)))
+    }
+
+    /// The same of its material and of what lenses do.
+    fn lenses_may_clear(&self, chunk: &Chunk, view: &View) -> bool {
         let may =
             |(reach, terrain): &(Reach, bool)| (*terrain || !chunk.has_terrain()) && reach.meets(&chunk.bounds, view);
         (self.by_material && chunk.translucency != Translucency::None) || self.translucent.iter().any(may)
@@ -300,7 +309,7 @@ impl Hiding {
     /// Whether some fragment of a chunk may be hidden, or translucent.
     pub fn touches(&self, chunk: &Chunk, view: &View) -> bool {
         self.hidden.iter().any(|reach| reach.meets(&chunk.bounds, view))
-            || self.may_clear(chunk, view)
+            || self.lenses_may_clear(chunk, view)
             || self.comes_and_goes(chunk)
     }
 }
@@ -383,13 +392,13 @@ mod tests {
             for place in corners.chain(places.into_iter().map(|p| low + size.abs() * DVec3::from(p))) {
                 let is_translucent = acts && volume.contains(place);
                 prop_assert!(is_translucent || !hiding.clears(&chunk, &view), "{place} is opaque");
-                prop_assert!(!is_translucent || hiding.may_clear(&chunk, &view), "{place} is translucent");
+                prop_assert!(!is_translucent || hiding.may_clear(&chunk, &view, false), "{place} is translucent");
             }
             // And few are kept that could be left out: those within a box's radius of the border.
             let radius = 0.5 * bounds.size().length() + 0.1;
             let distance = volume.signed_distance(bounds.center());
             prop_assert!(!acts || distance > -2.0 * radius || hiding.clears(&chunk, &view));
-            prop_assert!(distance < 2.0 * radius || !hiding.may_clear(&chunk, &view));
+            prop_assert!(distance < 2.0 * radius || !hiding.may_clear(&chunk, &view, false));
         }
     }
 }

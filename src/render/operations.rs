@@ -19,7 +19,7 @@ use crate::{
     scene::sized::POINTS,
     shader::{
         self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
-        PlanBody, PlanBorder, PlanContent, PlanEpoch, PlanLens, Scope, Step, Uber,
+        PlanBody, PlanBorder, PlanContent, PlanEpoch, PlanLens, Scope, Step, Uber, effect::COMING_LINES,
     },
 };
 
@@ -169,6 +169,8 @@ pub struct Operations {
     pub contents: Vec<ContentUse>,
     /// Whether objects come and go.
     pub timed: bool,
+    /// Whether some may be there by halves.
+    pub partly: bool,
     /// Which objects of the scene's own city that is.
     pub presence: Arc<[Presence]>,
     /// What lenses do to the moment, bottom lens first.
@@ -204,19 +206,28 @@ impl Operations {
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(tests.sun), ..Self::default() };
         out.add_time(time, visible);
+        out.add_coming(time);
         out.uber.tests = each_once(tests.picture);
         out.uber.leaves = each_once(tests.leaves);
         // Lenses of no volume at all have no bodies.
         if out.uber.tests.is_empty() {
             out.uber.bodies.clear();
         }
-        for effect in context {
+        let epochs = &time.epochs;
+        let coming = EffectUse::new(COMING_LINES);
+        let is_coming = |effect: &EffectUse| effect.effect == COMING_LINES;
+        let shows_all = context.iter().any(is_coming);
+        let of_scene = (out.partly && epochs.draws_future(None) && !shows_all).then_some(&coming);
+        for effect in context.iter().chain(of_scene) {
             out.add(effect, None, models, tables, point_px)?;
         }
         let active = || lenses.iter().enumerate().filter(|(i, _)| visible.get(*i) == Some(&true));
         for (i, lens) in active() {
-            for effect in lens.uses() {
-                out.add(effect, Some(i as u32), models, tables, point_px)?;
+            let number = i as u32;
+            let is_drawn = shows_all || of_scene.is_some() || lens.uses().any(is_coming);
+            let of_ghosts = (out.partly && epochs.draws_future(Some(number)) && !is_drawn).then_some(&coming);
+            for effect in lens.uses().chain(of_ghosts) {
+                out.add(effect, Some(number), models, tables, point_px)?;
             }
         }
         for (i, lens) in active() {
@@ -246,6 +257,7 @@ impl Operations {
         if !self.timed {
             return;
         }
+        self.partly = time.epochs.is_partly(&time.lifetimes);
         self.presence = time.lifetimes.first().map_or_else(Vec::new, |own| time.epochs.presence(own, &time.met)).into();
         let (words, begins) = time.epochs.words(&time.lifetimes, &time.met);
         let lenses = time.epochs.lenses();
@@ -256,8 +268,20 @@ impl Operations {
             EpochUse { lens: *lens, handler: operator.handler, words, bit }
         });
         self.epochs = uses.filter(|used| visible.get(used.lens as usize) == Some(&true)).collect();
-        self.uber.timed = true;
+        (self.uber.timed, self.uber.partly) = (true, self.partly);
         self.uber.epochs = each_once(time.epochs.operators.iter().map(|(_, operator)| operator.handler).collect());
+    }
+
+    /// Has modules of the uber back end draw the edges of what is not there yet.
+    fn add_coming(&mut self, time: &SceneTime) {
+        let epochs = &time.epochs;
+        let draws =
+            epochs.draws_future(None) || epochs.lenses().into_iter().any(|lens| epochs.draws_future(Some(lens)));
+        if self.partly && draws {
+            self.uber.effects.extend(shader::effect::number_of(COMING_LINES));
+            self.uber.effects = each_once(std::mem::take(&mut self.uber.effects));
+            self.uber.lines = true;
+        }
     }
 
     /// What one module of the uber back end has to hold for this scene.
@@ -330,7 +354,8 @@ impl Operations {
     /// What shading has to do outside all lenses.
     pub fn context_plan(&self, haze: bool) -> Plan {
         let steps = self.steps(&[], |_| None);
-        Plan { lines: draws_lines(&steps), steps, haze, timed: self.timed, ..Plan::default() }
+        let Self { timed, partly, .. } = *self;
+        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, ..Plan::default() }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
@@ -367,8 +392,9 @@ impl Operations {
             Some(PlanEpoch { lens, handler: e.handler, words: e.words, bit: e.bit })
         };
         let epochs = self.epochs.iter().filter_map(epoch).collect();
-        let timed = self.timed;
-        Plan { lines: draws_lines(&steps), lenses, steps, haze, masks, contents, timed, epochs, ..Plan::default() }
+        let lines = draws_lines(&steps);
+        let Self { timed, partly, .. } = *self;
+        Plan { lenses, steps, haze, masks, lines, contents, timed, partly, epochs, ..Plan::default() }
     }
 
     /// The list as steps; `place` finds a lens in the plan.

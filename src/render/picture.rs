@@ -282,7 +282,7 @@ impl Studio {
         let moment = match sun.when {
             SunTime::Never => return Ok(None),
             SunTime::At(moment) => moment,
-            SunTime::Scene => scene.moment.ok_or_else(|| {
+            SunTime::Scene => scene.shown_moment().ok_or_else(|| {
                 wrong(
                     "follows_time: the scene has no moment; [time] at = \"2026-06-21T16:00\" would be right".to_owned(),
                 )

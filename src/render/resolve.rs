@@ -270,13 +270,16 @@ impl Surroundings<'_> {
 }
 
 impl Surroundings<'_> {
-    /// The objects that are not there at the scene's moment; `None`: all are.
+    /// The objects that are not there at any moment of the scene; `None`: all are.
     fn gone(&self, scene: &Scene) -> Result<Option<Arc<[bool]>>, ResolveError> {
-        if scene.moment.is_none() {
+        let moments = Epochs::new(scene).map_err(ResolveError::Scene)?.own;
+        if moments.iter().all(|(moment, _)| moment.is_none()) {
             return Ok(None);
         }
         let lifetimes = self.lifetimes.of(self.model, &scene.city.dating).map_err(ResolveError::Scene)?;
-        Ok(Some(lifetimes.of.iter().map(|lifetime| !lifetime.holds(scene.moment)).collect()))
+        Ok(Some(
+            lifetimes.of.iter().map(|lifetime| !moments.iter().any(|(moment, _)| lifetime.holds(*moment))).collect(),
+        ))
     }
 
     /// Which lenses with time operators may hold some of which objects, or hold all of them, as they stand in a view; without one any may hold any.

@@ -2,9 +2,9 @@
 
 use crate::{
     lens::{
-        BestView, Lens,
+        BestView, Handled, Lens,
         best_view::{Depiction, LocalView},
-        epoch::{moment_after, set_to},
+        epoch::{makes_one_moment, moment_after, set_to},
     },
     scene::model::Scene,
     time::Moment,
@@ -88,13 +88,19 @@ impl Command {
         let Some(&LocalView::Camera { camera: to, above_ground }) = lens.best_view().and_then(BestView::view) else {
             return None;
         };
-        let then = moment_after(&lens.time, scene.moment, scene.time_s).unwrap_or(scene.moment);
         let is_elsewhen = !lens.time.is_empty();
+        // Moments that are made of the scene's, one for one, need no steps of its own.
+        let then = moment_after(&lens.time, scene.moment, scene.time_s).ok();
+        let then = then.filter(|_| scene.time_steps.is_empty() && lens.time.iter().all(makes_one_moment));
         Some(Self::of(format!("step through {}", lens.name), scene, |s| {
             (s.camera, s.camera_above_ground) = (Some(to), above_ground);
             if is_elsewhen {
-                s.lenses[index].time = s.moment.map(set_to).into_iter().collect();
-                s.moment = then;
+                let back: Vec<Handled> = s.moment.map(set_to).into_iter().chain(s.time_steps.clone()).collect();
+                let steps = std::mem::replace(&mut s.lenses[index].time, back);
+                match then {
+                    Some(then) => s.moment = then,
+                    None => s.time_steps.extend(steps),
+                }
             }
             if let Some(shown) = s.lenses[index].kind.best_view_mut() {
                 shown.depiction = Depiction::View(LocalView::Camera { camera: from, above_ground: false });

@@ -7,8 +7,9 @@ use glam::{DVec2, DVec3};
 use crate::{
     city::{Materials, lifetime::Dating, load::Up, side_table::Join},
     lens::{
-        EffectUse, Lens,
+        EffectUse, Handled, Lens,
         best_view::{Background, BaseStyle, StyleLook},
+        epoch::moment_after,
     },
     scene::{
         animation::Animation,
@@ -36,6 +37,8 @@ pub struct Scene {
     pub time_s: f64,
     /// The moment of the calendar that is shown: which objects are there; `None`: all are.
     pub moment: Option<Moment>,
+    /// Time operators that make of it, one after the other, what shows below all lenses.
+    pub time_steps: Vec<Handled>,
     /// How the context looks.
     pub style: Style,
     /// The ways of what moves.
@@ -52,6 +55,14 @@ pub struct Scene {
     pub figure: Figure,
     /// How it changes over time; a picture shows nothing of it.
     pub animation: Option<Animation>,
+}
+
+impl Scene {
+    /// The moment that shows outside all lenses; of several that show together the first.
+    pub fn shown_moment(&self) -> Option<Moment> {
+        // Steps that do not fit are told where pictures are made.
+        moment_after(&self.time_steps, self.moment, self.time_s).unwrap_or(self.moment)
+    }
 }
 
 /// Which city, and how much of it.

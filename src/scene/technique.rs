@@ -2,7 +2,8 @@
 //! comparison. The picture is the same; what a technique cannot do is refused.
 
 use crate::{
-    lens::{Class, EffectUse, Lens, LensBody},
+    city::lifetime::Undated,
+    lens::{Class, EffectUse, Lens, LensBody, epoch::makes_one_moment},
     scene::{check::SceneProblem, model::Scene},
     shader::{EffectKind, effect::find},
 };
@@ -100,10 +101,20 @@ impl Technique {
         if let Some((used, whose)) = context().chain(of_lenses()).find(|(used, _)| is_rule(used)) {
             return Some(format!("shows nothing translucent, and {whose} has the effect \"{}\"", used.effect));
         }
+        let is_partly = |lens: &&&Lens| !lens.time.iter().all(makes_one_moment);
+        if let Some(lens) = lenses.iter().find(is_partly) {
+            return Some(format!("shows nothing by halves, and the time of lens \"{}\" does", lens.name));
+        }
+        if !scene.time_steps.iter().all(makes_one_moment) {
+            return Some("shows nothing by halves, and [time] steps do".to_owned());
+        }
+        if scene.city.dating.undated == Undated::Ghost {
+            return Some("shows nothing by halves, and [city] undated = \"ghost\" does".to_owned());
+        }
         if !self.has_passes() {
             return None;
         }
-        if scene.moment.is_some() {
+        if scene.shown_moment().is_some() {
             return Some("shows all times, and [time] at asks for one".to_owned());
         }
         if let Some(lens) = lenses.iter().find(|lens| !lens.time.is_empty()) {

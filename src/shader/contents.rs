@@ -34,7 +34,7 @@ pub(super) fn specialised(
         let PlanContent { lens, class, city, clip, keeps_terrain } = *content;
         let own = format!("{:#x}u", 1_u32 << city);
         let terrain = if keeps_terrain { " && fragment.part != PART_TERRAIN" } else { "" };
-        let is_there = is_held(plan, lens, class, &classes, &interest);
+        let is_there = is_held(plan, lens, class, "fragment", &classes, &interest);
         let _ = writeln!(text, "    if {is_there}{terrain} {{");
         let _ = match clip {
             Clip::Order => writeln!(text, "        shown = {own};"),
@@ -49,16 +49,17 @@ pub(super) fn specialised(
     text + "    return shown;\n}\n\n"
 }
 
-/// Whether a place is of a class of a lens, as a condition: of one with a soft border that dithers, by chance.
+/// Whether a place is of a class of a lens, as a condition: of one with a soft border that dithers, by chance. `subject`: what has its `pixel`.
 pub(super) fn is_held(
     plan: &Plan,
     lens: u32,
     class: ClassTest,
+    subject: &str,
     classes: &impl Fn(u32) -> String,
     interest: &impl Fn(u32) -> String,
 ) -> String {
     match plan.border_of(lens).filter(|b| b.dithers) {
-        Some(_) => format!("is_dithered({}({}, {}), fragment.pixel)", class.share(), classes(lens), interest(lens)),
+        Some(_) => format!("is_dithered({}({}, {}), {subject}.pixel)", class.share(), classes(lens), interest(lens)),
         None => format!("{}({})", class.function(), classes(lens)),
     }
 }

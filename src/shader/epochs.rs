@@ -9,7 +9,7 @@ use std::{collections::BTreeSet, fmt::Write as _};
 use crate::shader::{
     contents::is_held,
     effect::definition::EffectDefinition,
-    plan::{Plan, program::Program, step::ClassTest},
+    plan::{Plan, program::Program, step::ClassTest, uber::Uber},
 };
 
 /// The texts of the time operators that a program calls.
@@ -29,25 +29,63 @@ fn applied(handler: &EffectDefinition, words: &str) -> String {
     if handler.is_users { format!("sound({call})") } else { call }
 }
 
-/// `moment_at` of a plan and what follows from it: `place` are the parameters, `argument` the fragment among them with what else there is,
-/// `classes` and `interest` those of a lens of the plan there.
+/// Where a module asks which moment shows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Asked {
+    /// What has `object` and `pixel`, among the parameters.
+    pub(super) subject: &'static str,
+    /// The parameters of functions.
+    pub(super) parameters: &'static str,
+    /// What they are called with.
+    pub(super) arguments: &'static str,
+    /// What names end with.
+    pub(super) suffix: &'static str,
+}
+
+/// Of fragments.
+pub(super) const OF_FRAGMENT: Asked =
+    Asked { subject: "fragment", parameters: "fragment: Fragment", arguments: "fragment", suffix: "" };
+/// Of fragments of lines.
+pub(super) const OF_LINE: Asked = Asked {
+    subject: "fragment",
+    parameters: "fragment: Fragment, classes: Classes",
+    arguments: "fragment, classes",
+    suffix: "",
+};
+/// Of layers.
+pub(super) const OF_LAYER: Asked = Asked {
+    subject: "point",
+    parameters: "point: Point, classes: Classes",
+    arguments: "point, classes",
+    suffix: "_of_layer",
+};
+
+impl Asked {
+    fn head(&self, partly: bool) -> String {
+        let Self { parameters, suffix, .. } = self;
+        let moment = if partly { "scene_instant()" } else { "scene_moment()" };
+        format!("fn moment{suffix}_at({parameters}) -> Moment {{\n    var moment = {moment};\n")
+    }
+}
+
+/// `moment_at` of a plan and what follows from it: `classes` and `interest` are those of a lens of the plan there.
 pub(super) fn specialised(
     plan: &Plan,
     handlers: &[EffectDefinition],
-    place: &str,
-    arguments: &str,
+    asked: &Asked,
     classes: impl Fn(u32) -> String,
     interest: impl Fn(u32) -> String,
 ) -> String {
-    let mut text = format!("fn moment_at({place}) -> Moment {{\n    var moment = scene_moment();\n");
+    let subject = asked.subject;
+    let mut text = asked.head(plan.partly);
     let words: BTreeSet<u32> = plan.epochs.iter().map(|epoch| epoch.bit / 32).collect();
     for word in words {
-        let _ = writeln!(text, "    let may_{word} = lenses_that_may(fragment.object, {word}u);");
-        let _ = writeln!(text, "    let surely_{word} = lenses_that_surely_do(fragment.object, {word}u);");
+        let _ = writeln!(text, "    let may_{word} = lenses_that_may({subject}.object, {word}u);");
+        let _ = writeln!(text, "    let surely_{word} = lenses_that_surely_do({subject}.object, {word}u);");
     }
     for steps in plan.epochs.chunk_by(|a, b| a.lens == b.lens) {
         let (lens, word, mask) = (steps[0].lens, steps[0].bit / 32, 1_u32 << (steps[0].bit % 32));
-        let is_here = is_held(plan, lens, ClassTest::Inside, &classes, &interest);
+        let is_here = is_held(plan, lens, ClassTest::Inside, subject, &classes, &interest);
         let _ = writeln!(
             text,
             "    if (may_{word} & {mask:#x}u) != 0u && ((surely_{word} & {mask:#x}u) != 0u || {is_here}) {{"
@@ -58,28 +96,27 @@ pub(super) fn specialised(
         }
         text.push_str("    }\n");
     }
-    text + "    return moment;\n}\n\n" + &exists(place, arguments)
+    text + "    return moment;\n}\n\n" + &exists(asked, plan.partly)
 }
 
 /// The same from the invoker table; `runs` says whether an invoker, `by`, runs there. `handler` of an invoker is the operator's number,
 /// `parameters` where its words begin. By the bits of lenses stand where their invokers begin and end.
-pub(super) fn uber(numbers: &[u32], handlers: &[EffectDefinition], place: &str, arguments: &str, runs: &str) -> String {
+pub(super) fn uber(uber: &Uber, handlers: &[EffectDefinition], asked: &Asked, runs: &str) -> String {
     let mut text = "fn after(moment: Moment, by: Invoker) -> Moment {\n    switch by.handler {\n".to_owned();
-    for &number in numbers {
+    for &number in &uber.epochs {
         let call = applied(&handlers[number as usize], "by.parameters");
         let _ = writeln!(text, "        case {number}u: {{ return {call}; }}");
     }
+    let (subject, head) = (asked.subject, asked.head(uber.partly));
     let _ = write!(
         text,
         "        default: {{ return moment; }}
     }}
 }}
 
-fn moment_at({place}) -> Moment {{
-    var moment = scene_moment();
-    for (var word = 0u; word < words_of_lenses(); word++) {{
-        var bits = lenses_that_may(fragment.object, word);
-        let surely = lenses_that_surely_do(fragment.object, word);
+{head}    for (var word = 0u; word < words_of_lenses(); word++) {{
+        var bits = lenses_that_may({subject}.object, word);
+        let surely = lenses_that_surely_do({subject}.object, word);
         // Only those that may act are gone through.
         while bits != 0u {{
             let bit = firstTrailingBit(bits);
@@ -107,13 +144,44 @@ fn moment_at({place}) -> Moment {{
 
 "
     );
-    text + &exists(place, arguments)
+    text + &exists(asked, uber.partly)
 }
 
-fn exists(place: &str, arguments: &str) -> String {
+/// `exists`: whether an object is there at a place; of what may be there by halves, `presence`: how much of it, and `comes`: whether it will be
+/// there soon.
+fn exists(asked: &Asked, partly: bool) -> String {
+    let Asked { subject, parameters, arguments, suffix } = asked;
+    if partly {
+        return format!(
+            "fn presence{suffix}({parameters}) -> f32 {{
+    let lifetime = lifetime_of({subject}.object);
+    if is_ghost(lifetime) {{
+        return UNDATED_OPACITY;
+    }}
+    if is_always(lifetime) {{
+        return 1.0;
+    }}
+    if is_never(lifetime) {{
+        return 0.0;
+    }}
+    var sum = 0.0;
+    var is_whole = true;
+    let count = combinations();
+    for (var i = 0u; i < count; i++) {{
+        combination = i;
+        let share = share_there(lifetime, moment{suffix}_at({arguments}));
+        sum += share * weight_of_combination();
+        is_whole = is_whole && share == 1.0;
+    }}
+    return select(min(sum, 1.0), 1.0, is_whole);
+}}
+
+"
+        );
+    }
     format!(
-        "fn exists({place}) -> bool {{
-    let lifetime = lifetime_of(fragment.object);
+        "fn exists({parameters}) -> bool {{
+    let lifetime = lifetime_of({subject}.object);
     if is_always(lifetime) {{
         return true;
     }}
@@ -121,6 +189,26 @@ fn exists(place: &str, arguments: &str) -> String {
         return false;
     }}
     return holds(lifetime, moment_at({arguments}));
+}}
+
+"
+    )
+}
+
+/// `comes`: whether what is not there at a place will be there soon, at one of the moments that show.
+pub(super) fn comes(asked: &Asked) -> String {
+    let Asked { subject, parameters, arguments, suffix } = asked;
+    format!(
+        "fn comes{suffix}({parameters}) -> bool {{
+    let lifetime = lifetime_of({subject}.object);
+    var will = false;
+    let count = combinations();
+    for (var i = 0u; i < count; i++) {{
+        combination = i;
+        let at = moment{suffix}_at({arguments});
+        will = will || will_be(lifetime, at);
+    }}
+    return will;
 }}
 
 "

@@ -5,8 +5,8 @@ use crate::shader::{
     library::{
         BLEND, BORDER, BORDER_WIDTH, CITIES, CLASS, CLEAR, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION,
         COMBINED_SPRITE, DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FORM, FRAGMENT, File,
-        GLASS, LENS, LENS_SPRITE, LIFETIME, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, MOMENT, OBJECTS,
-        ONE_CITY, OUTLINE, OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT,
+        GLASS, INSTANTS, LENS, LENS_SPRITE, LIFETIME, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, MOMENT,
+        OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT,
         SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE, SURFACE, TEXEL, TRANSPARENCY, VIEW, VIEW_UNIFORM,
     },
     plan::program::Program,
@@ -46,6 +46,7 @@ pub(super) fn of_shading(program: &Program, handlers: &[EffectDefinition]) -> Ve
     let has = |kind| program.effects().iter().any(|&e| handlers[e as usize].kind == kind);
     let (materials, filters) = (has(EffectKind::Material), has(EffectKind::Filter));
     let mut files = vec![VIEW, SURFACE, COLOR, PACKED, LIGHT, OBJECTS, POINT, SIGHT];
+    files.extend(of_time(program));
     files.extend(of_lenses(program));
     files.extend(if parts.shells { of_spans(program) } else { Vec::new() });
     files.extend(used(&[
@@ -77,8 +78,13 @@ pub(super) fn of_sections(program: &Program) -> Vec<File> {
 
 /// What is known of objects.
 pub(super) fn of_objects(program: &Program) -> Vec<File> {
-    let timed = program.has().timed;
-    used(&[(true, OBJECTS), (timed, MOMENT), (timed, LIFETIME)])
+    [&[OBJECTS], &of_time(program)[..]].concat()
+}
+
+/// What is known of when they are there.
+fn of_time(program: &Program) -> Vec<File> {
+    let parts = program.has();
+    used(&[(parts.timed, MOMENT), (parts.timed, LIFETIME), (parts.partly, INSTANTS)])
 }
 
 /// Where vertices stand: of the scene's own city, or also of contents.

@@ -91,12 +91,13 @@ fn relative_to_main_eye(placed: &str) -> String {
 }
 
 /// `visible`, or `is_layer`, begins with this.
-fn head(has_contents: bool, timed: bool, is_layers: bool) -> String {
+fn head(has_contents: bool, timed: bool, partly: bool, is_layers: bool) -> String {
     let name = if is_layers { "is_layer" } else { "visible" };
     let shown = has_contents.then(|| format!("({})", contents::is_shown("fragment")));
-    let there = timed.then(|| "exists(fragment)".to_owned());
+    let presence = if partly { "    let presence = presence(fragment);\n" } else { "" };
+    let there = timed.then(|| if partly { "(presence > 0.0)" } else { "exists(fragment)" }.to_owned());
     let asked = shown.into_iter().chain(there).map(|is| format!("    if !{is} {{\n        return false;\n    }}\n"));
-    format!("fn {name}(fragment: Fragment) -> bool {{\n") + &asked.collect::<String>()
+    format!("fn {name}(fragment: Fragment) -> bool {{\n{presence}") + &asked.collect::<String>()
 }
 
 fn call(handler: &EffectDefinition, first: &str) -> String {
@@ -135,11 +136,12 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
         text.push_str(&contents::specialised(plan, "fragment: Fragment", classes, interest));
     }
     if plan.timed {
-        text.push_str(&epochs::specialised(plan, handlers, "fragment: Fragment", "fragment", classes, interest));
+        text.push_str(&epochs::specialised(plan, handlers, &epochs::OF_FRAGMENT, classes, interest));
     }
-    text.push_str(&head(!plan.contents.is_empty(), plan.timed, is_layers));
+    text.push_str(&head(!plan.contents.is_empty(), plan.timed, plan.partly, is_layers));
     // Behind all that hides: what is not there is not translucent.
-    let mut material = if plan.clear_materials { clear_material(is_layers) } else { String::new() };
+    let clear = is_clear(plan.clear_materials, plan.partly);
+    let mut material = clear.as_deref().map_or_else(String::new, |clear| clear_material(clear, is_layers));
     for (step, handler) in steps() {
         let first = format!("{}u", step.parameters);
         let is_rule = handler.kind == EffectKind::Opacity;
@@ -174,9 +176,16 @@ fn specialised(text: &mut String, plan: &Plan, handlers: &[EffectDefinition], na
     let _ = writeln!(text, "{material}    return {};\n}}", !is_layers);
 }
 
-/// Where the material lets something through.
-fn clear_material(is_layers: bool) -> String {
-    format!("    if fragment.opacity < 1.0 {{\n        return {is_layers};\n    }}\n")
+/// Whether something is seen through a fragment, whatever lenses do: by its material, or as it is there by halves.
+fn is_clear(clear_materials: bool, partly: bool) -> Option<String> {
+    let asked = [(clear_materials, "fragment.opacity"), (partly, "presence")];
+    let asked: Vec<&str> = asked.into_iter().filter_map(|(is_asked, what)| is_asked.then_some(what)).collect();
+    (!asked.is_empty()).then(|| format!("{} < 1.0", asked.join(" * ")))
+}
+
+/// What becomes of it then.
+fn clear_material(clear: &str, is_layers: bool) -> String {
+    format!("    if {clear} {{\n        return {is_layers};\n    }}\n")
 }
 
 fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition], is_layers: bool) {
@@ -207,17 +216,17 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition], is
     }
     if uber.timed {
         let runs = "runs(by, fragment)";
-        text.push_str(&epochs::uber(&uber.epochs, handlers, "fragment: Fragment", "fragment", runs));
+        text.push_str(&epochs::uber(uber, handlers, &epochs::OF_FRAGMENT, runs));
     }
-    text.push_str(&head(uber.contents, uber.timed, is_layers));
-    let is_clear = if uber.clear_materials { "fragment.opacity < 1.0" } else { "false" };
+    text.push_str(&head(uber.contents, uber.timed, uber.partly, is_layers));
+    let clear = is_clear(uber.clear_materials, uber.partly);
     match is_layers {
         true => {
-            let _ = writeln!(text, "    var is_translucent = {is_clear};");
+            let _ = writeln!(text, "    var is_translucent = {};", clear.as_deref().unwrap_or("false"));
             text.push_str(IS_LAYER);
         }
         false => {
-            text.push_str(&if uber.clear_materials { clear_material(false) } else { String::new() });
+            text.push_str(&clear.map_or_else(String::new, |clear| clear_material(&clear, false)));
             text.push_str(VISIBLE);
         }
     }

@@ -102,6 +102,7 @@ files! {
     OBJECTS = "lib/objects.wgsl";
     MOMENT = "lib/moment.wgsl";
     LIFETIME = "lib/lifetime.wgsl";
+    INSTANTS = "lib/instants.wgsl";
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
     TRANSPARENCY = "lib/transparency.wgsl";

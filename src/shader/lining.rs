@@ -9,10 +9,11 @@ use std::fmt::Write as _;
 use crate::shader::{
     contents,
     effect::{definition::EffectDefinition, prototype::EffectKind},
-    epochs,
+    epochs::{self, OF_LINE},
     invoke::{self, fades},
     lens_test,
     plan::{
+        Plan,
         program::Program,
         step::{Scope, Step},
         uber::Uber,
@@ -47,12 +48,13 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
             if !plan.contents.is_empty() {
                 let (classes, interest) =
                     (|lens| format!("classes.lens_{lens}"), |lens| format!("classes.interest_{lens}"));
-                text.push_str(&contents::specialised(plan, PLACE, classes, interest));
+                text.push_str(&contents::specialised(plan, OF_LINE.parameters, classes, interest));
             }
             if plan.timed {
                 let (classes, interest) =
                     (|lens| format!("classes.lens_{lens}"), |lens| format!("classes.interest_{lens}"));
-                text.push_str(&epochs::specialised(plan, handlers, PLACE, ARGUMENTS, classes, interest));
+                text.push_str(&epochs::specialised(plan, handlers, &OF_LINE, classes, interest));
+                text.push_str(&if plan.partly { epochs::comes(&OF_LINE) } else { String::new() });
             }
             specialised(&mut text, &writer);
         }
@@ -61,18 +63,38 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
     text
 }
 
-/// The parameters of `shown_cities`.
-const PLACE: &str = "fragment: Fragment, classes: Classes";
-
-const ARGUMENTS: &str = "fragment, classes";
-
 /// A line of a city that does not show at its place, or between faces that are both not there.
-fn gone(has_contents: bool, timed: bool) -> String {
-    let shown = has_contents.then(|| format!("({})", contents::is_shown(ARGUMENTS)));
-    let there = timed.then(|| format!("(exists({ARGUMENTS}) || exists(other, classes))"));
+fn gone(has_contents: bool, timed: bool, partly: bool, coming: &str) -> String {
+    let shown = has_contents.then(|| format!("({})", contents::is_shown(OF_LINE.arguments)));
+    let there = (timed && !partly).then(|| "(exists(fragment, classes) || exists(other, classes))".to_owned());
     let of = |is: String| format!("    if !{is} {{\n        opacity = 0.0;\n    }}\n");
-    shown.into_iter().chain(there).map(of).collect()
+    let all: String = shown.into_iter().chain(there).map(of).collect();
+    let is_coming = format!("    let is_coming = {coming};\n");
+    match (partly, coming) {
+        (true, _) => all + &is_coming + SHARE_OF_FACES,
+        (false, NONE_IS_COMING) => all,
+        (false, _) => all + &is_coming + "    if is_coming {\n        opacity = 0.0;\n    }\n",
+    }
 }
+
+/// Where no effect draws lines of what is not there yet.
+const NONE_IS_COMING: &str = "false";
+
+/// Whether a line is of such an effect, by what it asks of each of them.
+fn is_coming(asked: impl Iterator<Item = String>) -> String {
+    let all: Vec<String> = asked.collect();
+    if all.is_empty() { NONE_IS_COMING.to_owned() } else { all.join(" || ") }
+}
+
+/// Lines are there as much as the face that is there most. Those of what is not there yet are where no face is: `is_coming` says that they are
+/// such.
+const SHARE_OF_FACES: &str = "    let share_of_faces = max(presence(fragment, classes), presence(other, classes));
+    if !is_coming {
+        opacity *= share_of_faces;
+    } else if share_of_faces > 0.0 || !(comes(fragment, classes) || comes(other, classes)) {
+        opacity = 0.0;
+    }
+";
 
 fn parameters(handler: &EffectDefinition, first: &str) -> String {
     if handler.slots() == 0 { String::new() } else { format!(", {}({first})", handler.own("parameters")) }
@@ -148,7 +170,10 @@ fn specialised(text: &mut String, writer: &Writer) {
         }
     }
     text.push_str(&hidden);
-    text.push_str(&gone(!writer.plan.contents.is_empty(), writer.plan.timed));
+    let coming = steps().filter(|(_, (_, handler))| handler.draws_coming());
+    let coming = is_coming(coming.map(|(number, _)| format!("step == {number}u")));
+    let Plan { contents, timed, partly, .. } = writer.plan;
+    text.push_str(&gone(!contents.is_empty(), *timed, *partly, &coming));
     text.push_str("    return vec4f(color, opacity);\n}\n");
 }
 
@@ -179,13 +204,16 @@ fn uber_source(text: &mut String, uber: &Uber, handlers: &[EffectDefinition]) {
     let has_posts = uber.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Post);
     let share = invoke::share_argument(uber);
     let styled = if has_posts { format!("color = invoke_style(color, point, by{share});") } else { String::new() };
-    text.push_str(&line_at(&styled, &gone(uber.contents, uber.timed)));
+    let coming = uber.effects.iter().filter(|&&number| handlers[number as usize].draws_coming());
+    let coming = is_coming(coming.map(|number| format!("drawing.handler == {number}u")));
+    text.push_str(&line_at(&styled, &gone(uber.contents, uber.timed, uber.partly, &coming)));
     let runs = if fades(uber) { "is_there(by, fragment, classes)" } else { "runs(by, classes)" };
     if uber.contents {
-        text.push_str(&contents::uber(PLACE, runs));
+        text.push_str(&contents::uber(OF_LINE.parameters, runs));
     }
     if uber.timed {
-        text.push_str(&epochs::uber(&uber.epochs, handlers, PLACE, ARGUMENTS, runs));
+        text.push_str(&epochs::uber(uber, handlers, &OF_LINE, runs));
+        text.push_str(&if uber.partly { epochs::comes(&OF_LINE) } else { String::new() });
     }
     text.push_str(&if fades(uber) { [LINE_SHARE_FADED, IS_THERE].concat() } else { LINE_SHARE.to_owned() });
     text.push_str(LINE_KINDS);

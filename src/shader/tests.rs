@@ -116,6 +116,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         contents: contents_of(seed),
         clear_materials: seed.is_multiple_of(4),
         timed: seed % 3 < 2,
+        partly: seed % 3 == 1,
         epochs: epochs_of(seed),
         ..Plan::default()
     };
@@ -140,6 +141,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         clear_materials: plan.clear_materials,
         contents: !plan.contents.is_empty(),
         timed: plan.timed,
+        partly: plan.partly,
         epochs: Program::Specialised(plan.clone()).epochs(),
     };
     let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
-    invoke::{each, invoke, shade, share_argument, styled, used},
+    epochs::{self, OF_LAYER},
+    invoke::{each, fades, invoke, shade, share_argument, styled, used},
     lens_test,
     library::{
         HALO, INVOKER_CLASSES, LENS_CLEAR, LENS_COVERS, LENS_DISTANCE, LENS_ENDS, NO_CLASSES, SHARE_AT_INVOKER,
@@ -73,15 +74,32 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition], shading: &Shadi
 /// `opacity_at`, for `pass/composite.wgsl`.
 pub(super) fn opacity(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let head = "fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n";
+    let mut text = epochs::operators(&Program::Uber(uber.clone()), handlers);
+    if uber.partly {
+        let runs = if fades(uber) { "is_layer_there(by, point, classes)" } else { "runs(by, classes)" };
+        text.push_str(if fades(uber) { IS_LAYER_THERE } else { "" });
+        text.push_str(&epochs::uber(uber, handlers, &OF_LAYER, runs));
+    }
+    let end = opacity_end(uber.clear_materials, uber.partly);
     // Of materials alone there are no rules.
     if !used(uber, handlers).any(|(_, h)| h.kind == EffectKind::Opacity) {
-        return head.to_owned() + opacity_end(uber.clear_materials);
+        return text + head + &end;
     }
-    let mut text = invoke(uber, "opacity", &[EffectKind::Opacity], handlers) + head;
+    text.push_str(&(invoke(uber, "opacity", &[EffectKind::Opacity], handlers) + head));
     let share = share_argument(uber);
     text.push_str(&each(uber, "OPACITIES", &format!("opacity = invoke_opacity(opacity, point, by{share});\n")));
-    text + opacity_end(uber.clear_materials)
+    text + &end
 }
+
+/// Whether something is there at a layer that cannot be had by halves, where lenses fade.
+const IS_LAYER_THERE: &str = "fn is_layer_there(by: Invoker, point: Point, classes: Classes) -> bool {
+    if by.border != 0u && parameters[by.border - 1u].z > 0.5 {
+        return is_dithered(share_at(by, classes), point.pixel);
+    }
+    return runs(by, classes);
+}
+
+";
 
 /// Which classes a place has, and which invokers run there.
 pub(super) fn classes(uber: &Uber) -> String {

@@ -7,6 +7,7 @@ use crate::shader::{
         definition::EffectDefinition,
         prototype::{EffectKind, Mode, Stage},
     },
+    epochs::{self, OF_LAYER},
     lens_test, masks,
     names::one_line,
     plan::{
@@ -209,7 +210,13 @@ impl Writer<'_> {
 
     /// How much of a translucent layer is seen, for `pass/composite.wgsl`.
     pub(super) fn opacity(&self) -> String {
-        let mut text = "fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n".to_owned();
+        let mut text = epochs::operators(&Program::Specialised(self.plan.clone()), self.handlers);
+        if self.plan.partly {
+            let (classes, interest) =
+                (|lens| format!("classes.lens_{lens}"), |lens| format!("classes.interest_{lens}"));
+            text.push_str(&epochs::specialised(self.plan, self.handlers, &OF_LAYER, classes, interest));
+        }
+        text.push_str("fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n");
         for (step, handler) in self.plan.steps_of(EffectKind::Opacity, self.handlers) {
             let first = format!("{}u", step.parameters);
             let own = match handler.slots() {
@@ -228,7 +235,7 @@ impl Writer<'_> {
                 false => writeln!(text, "    if {} {{\n        opacity = {value};\n    }}", conditions.join(" && ")),
             };
         }
-        text.push_str(opacity_end(self.plan.clear_materials));
+        text.push_str(&opacity_end(self.plan.clear_materials, self.plan.partly));
         text
     }
 
@@ -245,9 +252,11 @@ impl Writer<'_> {
     }
 }
 
-/// The end of `opacity_at`: of what is translucent itself, a lens shows that share.
-pub(super) fn opacity_end(has_clear_materials: bool) -> &'static str {
-    if has_clear_materials { "    return opacity * point.opacity;\n}\n" } else { "    return opacity;\n}\n" }
+/// The end of `opacity_at`: of what is translucent itself, or there by halves, a lens shows that share.
+pub(super) fn opacity_end(has_clear_materials: bool, partly: bool) -> String {
+    let material = if has_clear_materials { " * point.opacity" } else { "" };
+    let presence = if partly { " * presence_of_layer(point, classes)" } else { "" };
+    format!("    return opacity{material}{presence};\n}}\n")
 }
 
 /// What keeps compilers from putting the answer of a handler of this kind together with what follows (`lib/point.wgsl`).

@@ -32,8 +32,11 @@ const MOST_MONTHS: i64 = 12 * 20_000;
 const MOST_MICROS: i64 = 20_000 * 366 * DAY;
 
 impl Span {
+    /// No time at all.
+    pub const NONE: Self = Self { months: 0, micros: 0 };
+
     /// Months, then microseconds.
-    pub fn new(months: i32, micros: i64) -> Self {
+    pub const fn new(months: i32, micros: i64) -> Self {
         Self { months, micros }
     }
 
@@ -75,6 +78,17 @@ impl Span {
     /// Whether it is none at all.
     pub fn is_none(self) -> bool {
         self == Self::default()
+    }
+
+    /// Whether it goes back, a month counting as a twelfth of the mean year.
+    pub fn is_back(self) -> bool {
+        self.mean_micros() < 0
+    }
+
+    /// As long, the other way.
+    #[must_use]
+    pub fn back(self) -> Self {
+        Self { months: -self.months, micros: -self.micros }
     }
 
     /// As shaders have it: months, whole hours and microseconds of an hour (0 to 3,599,999,999).

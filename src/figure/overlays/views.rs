@@ -9,7 +9,6 @@ use crate::{
         BestView, Class, EffectUse, Lens, LensBody, LensKind, Parameter, Placement, Region,
         best_view::{LocalView, MapMode},
         chosen::Choice,
-        epoch::moment_after,
     },
     render::picture::{RenderError, Studio},
     scene::{Figure, PiecePlace, Poi, PoiPlace, Scene, Style, StyleLook},
@@ -173,8 +172,7 @@ fn show_moment(studio: &Studio, scene: &Scene, lens: &str, own: &mut Scene) -> R
     if steps.is_empty() {
         return Ok(());
     }
-    let then = moment_after(steps, scene.moment, scene.time_s);
-    own.moment = then.map_err(|message| RenderError::Scene(format!("lens \"{lens}\": {message}")))?;
+    own.time_steps.extend(steps.iter().cloned());
     if let Some(sun) = studio.sun_by_date(own)? {
         own.sun = sun;
     }

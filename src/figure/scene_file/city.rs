@@ -107,10 +107,10 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
     field!(
         key(
             "undated",
-            Kind::Word { now: &["show", "hide"], later: &["ghost"] },
+            Kind::Word { now: &["show", "hide", "ghost"], later: &[] },
             "\"show\"",
             "",
-            "What becomes of objects without a date where a moment is shown; terrain, roads, water and land use without one always show.",
+            "What becomes of objects without a date where a moment is shown: they are always there (`show`), never (`hide`), or always by halves (`ghost`); terrain, roads, water and land use without one always show.",
             "\"hide\"",
         ),
         Word,

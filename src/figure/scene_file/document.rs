@@ -30,7 +30,7 @@ use crate::{
     shader::{
         Blend, EffectDefinition,
         effect::{
-            AskedBy, EffectKind, MAX_RAMP, ParameterDefinition, ParameterKind, PerObject, asked_for,
+            AskedBy, EffectKind, MAX_INSTANTS, MAX_RAMP, ParameterDefinition, ParameterKind, PerObject, asked_for,
             effects as all_effects,
         },
     },
@@ -478,6 +478,14 @@ fn of_parameter(kind: &ParameterKind) -> Value {
         ParameterKind::Vector => of_kind(&Kind::Point),
         ParameterKind::Numbers => {
             json!({ "type": "array", "items": { "type": "number" }, "minItems": 1, "maxItems": 256 })
+        }
+        ParameterKind::Instants => {
+            let item = json!({ "type": ["string", "integer"] });
+            json!({ "type": "array", "items": item, "minItems": 1, "maxItems": MAX_INSTANTS })
+        }
+        ParameterKind::Weights => {
+            let item = json!({ "type": "number", "exclusiveMinimum": 0 });
+            json!({ "type": "array", "items": item, "minItems": 1, "maxItems": MAX_INSTANTS })
         }
         ParameterKind::Texts => {
             json!({ "type": "array", "items": { "type": "string" }, "minItems": 1, "maxItems": 256 })

@@ -9,7 +9,7 @@ use crate::{
         node::{Data, Node},
         reader::Reader,
     },
-    lens::{Handled, Lens, Operator, Parameter},
+    lens::{Handled, Operator, Parameter},
     shader::{
         effect::{AskedBy, ParameterKind},
         effect_file::RESERVED_OF_TIME,
@@ -55,20 +55,20 @@ impl Form<Option<Moment>> for Same {
     }
 }
 
-/// The steps of a lens' `time`.
-pub fn written(lens: &Lens) -> Option<Data> {
+/// Time operators, one after the other.
+pub fn written(steps: &[Handled]) -> Option<Data> {
     let step = |step: &Handled| {
         let parameters = step.parameters.iter().map(|(key, value)| (key.clone(), parameter_data(value)));
         Data::table(std::iter::once((OP.to_owned(), Data::text(&step.handler))).chain(parameters))
     };
-    (!lens.time.is_empty()).then(|| Data::list(lens.time.iter().map(step)))
+    (!steps.is_empty()).then(|| Data::list(steps.iter().map(step)))
 }
 
-/// Reads them; what is wrong is noted.
-pub fn read(reader: &mut Reader, fields: &Fields) -> Vec<Handled> {
-    let nodes = fields.node("time").and_then(Node::list).unwrap_or_default();
+/// Reads those of a key; what is wrong is noted.
+pub fn read(reader: &mut Reader, fields: &Fields, key: &str) -> Vec<Handled> {
+    let nodes = fields.node(key).and_then(Node::list).unwrap_or_default();
     let steps = nodes.iter().enumerate().filter_map(|(i, node)| {
-        let place = fields.place.within(&format!("time.{i}"), node.line);
+        let place = fields.place.within(&format!("{key}.{i}"), node.line);
         step(node)
             .map_err(|(key, message)| {
                 let line = node.entry(&key).map_or(node.line, |entry| entry.line);
@@ -94,7 +94,9 @@ fn step(node: &Node) -> Result<Handled, (String, String)> {
     for (key, _, value) in entries.iter().filter(|(key, ..)| key != OP) {
         let is_moment = definition.parameters.iter().any(|p| p.name == *key && p.kind == ParameterKind::Moment);
         let text = text_of(value).filter(|_| is_moment).map(Parameter::Text);
-        match text.or_else(|| parameter(value)) {
+        let is_of_instants = definition.parameters.iter().any(|p| p.name == *key && p.kind == ParameterKind::Instants);
+        let texts = || value.list().filter(|_| is_of_instants)?.iter().map(text_of).collect::<Option<Vec<String>>>();
+        match text.or_else(|| texts().map(Parameter::Texts)).or_else(|| parameter(value)) {
             Some(value) => used.parameters.insert(key.clone(), value),
             None => return Err(wrong(key, format!("{} is no value of a parameter", value.quoted()))),
         };

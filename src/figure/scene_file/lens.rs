@@ -151,7 +151,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "Which moment shows in it, of the one that shows below it: time operators, one after the other; see Time. A lens of any kind may have some, a `time` lens must. Of a lens with an overlay, which moment its view shows.",
             "[{ op = \"set\", at = \"1650\" }]",
         ),
-        |lens, _| epoch::written(lens),
+        |lens, _| epoch::written(&lens.time),
     ),
     Row::<Lens>::joint(
         key("poi", Kind::Names, "none", "", "The name of a `[[poi]]`, or several. Of an occlusion lens: what shall be seen; it never hides itself. Of a lens with an overlay: what the overlay is tied to by context lines; a view is of the first of them.", "\"hall\""),
@@ -553,7 +553,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Lens {
         reader.checker.note(&fields.place, "above_ground", fields.line("above_ground"), message);
     }
     lens.kind.set_content(content::read(reader, fields, of_effects));
-    lens.time = epoch::read(reader, fields);
+    lens.time = epoch::read(reader, fields, "time");
     if matches!(lens.kind, LensKind::Time(_)) && !fields.given("time") {
         let message =
             "is missing: which moment shows in the lens. For example time = [{ op = \"set\", at = \"1650\" }]";

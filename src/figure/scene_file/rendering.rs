@@ -85,9 +85,9 @@ fn key_of(of: ParameterDefinition) -> Key {
         }
         ParameterKind::Color => Kind::Color,
         ParameterKind::Vector => Kind::Point,
-        ParameterKind::Text | ParameterKind::Texts => Kind::Names,
+        ParameterKind::Text | ParameterKind::Texts | ParameterKind::Instants => Kind::Names,
         ParameterKind::Moment | ParameterKind::Span | ParameterKind::Unit | ParameterKind::Clock => Kind::Text,
-        ParameterKind::Numbers => Kind::Numbers,
+        ParameterKind::Numbers | ParameterKind::Weights => Kind::Numbers,
         ParameterKind::Shares => Kind::Shares,
         ParameterKind::Colors => Kind::Colors,
     };

@@ -359,6 +359,18 @@ fn deforms() -> impl Strategy<Value = Deform> {
         .prop_map(|(steps, control, strength)| Deform { steps, control, strength })
 }
 
+/// An aggregate of years, and of so many days later, with weights.
+fn several(all: Vec<(bool, i64, u8)>) -> Handled {
+    let at = |(is_later, count, _): &(bool, i64, u8)| match is_later {
+        true => Span::of_micros(count * time::DAY).to_string(),
+        false => Moment::of_year(*count).unwrap().written(),
+    };
+    let texts = Parameter::Texts(all.iter().map(at).collect());
+    let weights = Parameter::Numbers(all.iter().map(|(.., weight)| f64::from(*weight)).collect());
+    let parameters = [("at".to_owned(), texts), ("weights".to_owned(), weights)];
+    Handled { handler: "aggregate".into(), parameters: parameters.into() }
+}
+
 /// Time operators of a lens, in few of them.
 fn operators() -> impl Strategy<Value = Vec<Handled>> {
     let of = |op: &str, parameters: Vec<(&str, String)>| Handled {
@@ -383,6 +395,8 @@ fn operators() -> impl Strategy<Value = Vec<Handled>> {
             "loop",
             vec![("begin", Moment::of_year(year).unwrap().written()), ("end", "1000".into())]
         )),
+        (1..99i32).prop_map(move |months| of("ghost", vec![("past", Span::of_months(months).to_string())])),
+        prop::collection::vec((any::<bool>(), 1..999i64, 1..9u8), 1..4).prop_map(several),
     ];
     prop_oneof![4 => Just(vec![]), 1 => prop::collection::vec(one, 1..4)]
 }
@@ -618,7 +632,7 @@ prop_compose! {
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
         shown in prop::collection::vec((shown(), prop::option::of(overlays())), 0..3), layout in prop::option::of(layouts()), figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), chord_px in prop_oneof![Just(0.25), 0.02..=100.0f64], ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
         (animation, ways, time_s) in (prop::option::of(animations()), prop::collection::vec(ways(), 0..3), -1e6..1e6f64),
-        (moment, from, undated) in (prop::option::of(Moment::FIRST.micros()..=Moment::LAST.micros()), prop::option::of("[a-z]{1,5}"), any::<bool>())) -> Scene {
+        (moment, from, undated, steps) in (prop::option::of(Moment::FIRST.micros()..=Moment::LAST.micros()), prop::option::of("[a-z]{1,5}"), any::<bool>(), operators())) -> Scene {
         let projection_of = |tenths: u32, ortho: bool| match ortho {
             true => Projection::Orthographic { height_m: f64::from(tenths) },
             false => Projection::Perspective { fov_y: (f64::from(tenths) / 10.0).to_radians() },
@@ -662,6 +676,7 @@ prop_compose! {
             trajectories: ways.into_iter().enumerate().map(|(i, way)| Trajectory { name: format!("w{i}"), ..way }).collect(),
             time_s,
             moment: moment.and_then(Moment::from_micros),
+            time_steps: steps,
             overlays,
             layout: layout.unwrap_or_default(),
             camera: with_camera.then_some(Camera { eye, target, up, projection, near_m }),
@@ -678,7 +693,7 @@ prop_compose! {
         scene.city.lod = lod.map(|tenths| crate::city::Lod { tenths }.to_string());
         scene.city.ground = ground;
         scene.city.joins = (0..scene.lenses.len() % 3).map(|i| Join { file: format!("t{i}.csv").into(), key: from.clone().unwrap_or_default(), attribute: undated.then(|| "id".into()) }).collect();
-        scene.city.dating = Dating { until: from.clone().filter(|_| clay), from, undated: if undated { Undated::Hide } else { Undated::Show } };
+        scene.city.dating = Dating { until: from.clone().filter(|_| clay), from, undated: if undated { Undated::Hide } else if clay { Undated::Ghost } else { Undated::Show } };
         scene
     }
 }

@@ -78,7 +78,10 @@ fn every_mistake_names_its_line_place_and_remedy() {
             "[time] at: \"1890-13\" is no time; a year, a date or a date-time as in",
         ),
         ("veduta = 1\n[time]\nat = \"../1890\"\n", "[time] at: \"../1890\" has no beginning"),
-        ("veduta = 1\n[city]\nundated = \"gone\"\n", "[city] undated: must be \"show\" or \"hide\", is \"gone\""),
+        (
+            "veduta = 1\n[city]\nundated = \"gone\"\n",
+            "[city] undated: must be \"show\" or \"hide\" or \"ghost\", is \"gone\"",
+        ),
         ("veduta = 1\ncity = 3\n", "city: must be a table, is 3"),
         (
             "veduta = 1\n[camera]\neye = [0, 0, 0]\ntarget = [0, 0, 0]",

@@ -3,6 +3,7 @@
 use crate::{
     figure::scene_file::{
         check::Fields,
+        epoch,
         forms::{Color, Form as _, Same, lens_color},
         keys::{FAR_M, Kind, Table, key},
         node::{Data, Node},
@@ -39,6 +40,18 @@ pub const TIME_ROWS: &[Row<Scene>] = &[
         ),
         Same,
         |scene: Scene| scene.moment
+    ),
+    Row::<Scene>::new(
+        key(
+            "steps",
+            Kind::Operators,
+            "none",
+            "",
+            "Time operators that make of `at` what shows where no lens shows another moment: as a lens' `time` has them.",
+            "[{ op = \"ghost\", past = \"50 years\" }]",
+        ),
+        |scene, _| epoch::written(&scene.time_steps),
+        |scene, given| scene.time_steps = epoch::read(given.reader, given.fields, "steps"),
     ),
     field!(
         key(

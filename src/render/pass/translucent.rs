@@ -38,7 +38,7 @@ pub fn draw_translucent<K: PipelineKey>(
         let (all, some): (Vec<&Chunk>, Vec<&Chunk>) = seen
             .iter()
             .map(|s| s.chunk)
-            .filter(|chunk| cut.hiding.may_clear(chunk, view))
+            .filter(|chunk| cut.hiding.may_clear(chunk, view, drawn.content.is_some()))
             .partition(|chunk| drawn.content.is_none() && cut.hiding.keeps_all_clear(chunk, view));
         for (chunks, is_all) in [(all, true), (some, false)] {
             if chunks.is_empty() {

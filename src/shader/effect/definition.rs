@@ -74,6 +74,9 @@ pub struct EffectDefinition {
     pub parameters_end: usize,
 }
 
+/// The effect that draws the edges of what is not there yet.
+pub const COMING_LINES: &str = "coming-lines";
+
 impl EffectDefinition {
     /// Its name as WGSL has it: what all its names begin with.
     pub fn wgsl_name(&self) -> String {
@@ -121,6 +124,11 @@ impl EffectDefinition {
     /// The WGSL of its parameters alone.
     pub fn parameters_source(&self) -> &str {
         &self.source[..self.parameters_end]
+    }
+
+    /// Whether its lines are those of what is not there yet.
+    pub fn draws_coming(&self) -> bool {
+        self.name == COMING_LINES && !self.is_users
     }
 
     /// How many numbers its WGSL reads of its parameters: the first value per object is one.

@@ -8,8 +8,8 @@ pub(super) mod prototype;
 pub(super) mod registry;
 pub(super) mod user;
 
-pub use definition::{Amount, EffectDefinition, PerObject};
-pub use parameter::{DefaultValue, Fallback, MAX_LIST, MAX_RAMP, ParameterDefinition, ParameterKind};
+pub use definition::{Amount, COMING_LINES, EffectDefinition, PerObject};
+pub use parameter::{DefaultValue, Fallback, MAX_INSTANTS, MAX_LIST, MAX_RAMP, ParameterDefinition, ParameterKind};
 pub use prototype::{AskedBy, EffectKind, Mode, PROTOTYPES, Prototype, Stage};
 pub use registry::{
     MOST_HANDLERS, asked_for, effects, find, find_asked_by, handlers, named, number_asked_by, number_of,

@@ -38,8 +38,15 @@ pub enum ParameterKind {
     Unit,
     /// A time of day, `"14:30"`, less than 24 hours; in WGSL a `Duration` without months.
     Clock,
+    /// Moments that show together, or spans, each as [`Self::Moment`] or [`Self::Span`], at most [`MAX_INSTANTS`]; in WGSL an `Instants`. For
+    /// the program's own operators alone.
+    Instants,
+    /// Weights of instants: numbers above 0, at most [`MAX_INSTANTS`]; not for WGSL.
+    Weights,
 }
 
+/// Moments that show together, at most.
+pub const MAX_INSTANTS: usize = 64;
 /// Longest list a parameter takes.
 pub const MAX_LIST: usize = 256;
 /// Steps of a ramp.
@@ -56,7 +63,8 @@ impl ParameterKind {
             Self::Moment => Some(("Moment", 2)),
             Self::Span | Self::Clock => Some(("Duration", 3)),
             Self::Unit => Some(("Unit", 3)),
-            Self::Text | Self::Numbers | Self::Texts => None,
+            Self::Instants => Some(("Instants", 3)),
+            Self::Text | Self::Numbers | Self::Texts | Self::Weights => None,
         }
     }
 
@@ -78,6 +86,10 @@ impl ParameterKind {
             Self::Span => "a span of time: \"10 years\", \"-6 months\", \"1 h 30 min\" or \"P10Y\"".into(),
             Self::Unit => "a unit of time: \"year\", \"10 years\", \"month\", \"day\" or \"15 min\"".into(),
             Self::Clock => "a time of day: \"14:30\"".into(),
+            Self::Instants => {
+                format!("1 to {MAX_INSTANTS} times, or spans of time: [\"1650\", \"1750\"] or [\"0 s\", \"-10 years\"]")
+            }
+            Self::Weights => format!("1 to {MAX_INSTANTS} numbers above 0"),
         }
     }
 

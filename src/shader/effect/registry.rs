@@ -39,6 +39,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("blur"),
     built_in!("edges"),
     built_in!("feature-lines"),
+    built_in!("coming-lines"),
     built_in!("iso-lines"),
     built_in!("eraser"),
     built_in!("cut-away"),
@@ -70,6 +71,8 @@ const FILES: &[(&str, &str)] = &[
     built_in!("floor"),
     built_in!("time-of-day"),
     built_in!("loop"),
+    built_in!("aggregate"),
+    built_in!("ghost"),
 ];
 
 /// How many handlers the 13 bits of an invoker can tell apart.

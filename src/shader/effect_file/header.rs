@@ -74,6 +74,8 @@ enum TypeName {
     Span,
     Unit,
     Clock,
+    Instants,
+    Weights,
 }
 
 /// Parameters that more than one effect has.
@@ -114,6 +116,8 @@ impl ParameterHeader {
             (TypeName::Span, None) => ParameterKind::Span,
             (TypeName::Unit, None) => ParameterKind::Unit,
             (TypeName::Clock, None) => ParameterKind::Clock,
+            (TypeName::Instants, None) => ParameterKind::Instants,
+            (TypeName::Weights, None) => ParameterKind::Weights,
             (TypeName::Number, None) => match self.range.map(Spanned::into_inner) {
                 None => ParameterKind::Number { min: f64::MIN, max: f64::MAX },
                 Some([min, max]) if min < max => ParameterKind::Number { min, max },

@@ -69,6 +69,7 @@ pub(super) fn parameters_source(effect: &EffectDefinition) -> String {
             "Moment" => format!("Moment({}, {})", int(), word()),
             "Unit" => format!("Unit({}, {}, {})", int(), word(), word()),
             "Duration" => format!("Duration({}, {}, {})", int(), int(), word()),
+            "Instants" => format!("Instants({}, {}, {})", word(), word(), word()),
             _ => float(),
         })
         .collect();

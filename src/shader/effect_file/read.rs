@@ -96,6 +96,11 @@ fn of_header(file: &File, is_users: bool) -> Result<EffectDefinition, FileError>
             let message = "types moment, span, unit and clock are for kind = \"epoch\"";
             return Err(file.error(place, message));
         }
+        let is_of_set = matches!(parameter.kind, ParameterKind::Instants | ParameterKind::Weights);
+        if is_of_set && (is_users || effect.kind != EffectKind::Epoch) {
+            let message = "types instants and weights are for the program's own aggregate; moment, span, unit and clock would be right";
+            return Err(file.error(place, message));
+        }
         effect.parameters.push(parameter);
     }
     for (key, amount) in amounts {

@@ -48,6 +48,8 @@ pub struct Plan {
     pub contents: Vec<PlanContent>,
     /// Whether objects come and go: each place shows a moment.
     pub timed: bool,
+    /// Whether some may be there by halves: at some of several moments, or as ghosts.
+    pub partly: bool,
     /// The time operators of its lenses, bottom lens first.
     pub epochs: Vec<PlanEpoch>,
     /// How places are told apart, for the techniques that are kept for reference; `None`: by accumulation.
@@ -170,8 +172,8 @@ impl Plan {
             rules.any(|(step, _)| matches!(step.scope, Scope::Lens(l, _) if l == lens))
         };
         (0..).zip(&mut lenses).for_each(|(i, lens)| lens.border = lens.border.filter(|b| b.dithers || fades(i)));
-        let (clear_materials, timed) = (self.clear_materials, self.timed);
-        Some(Self { lenses, steps, contents, epochs, clear_materials, timed, ..Self::default() })
+        let Self { clear_materials, timed, partly, .. } = *self;
+        Some(Self { lenses, steps, contents, epochs, clear_materials, timed, partly, ..Self::default() })
     }
 
     /// The part that lines go through; `None` where no effect draws lines.
@@ -183,6 +185,7 @@ impl Plan {
             lines: true,
             contents: self.contents.clone(),
             timed: self.timed,
+            partly: self.partly,
             epochs: self.epochs.clone(),
             ..Self::default()
         })
@@ -201,7 +204,7 @@ impl Plan {
         self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
         self.contents.clear();
         self.epochs.clear();
-        self.timed = false;
+        (self.timed, self.partly) = (false, false);
         self
     }
 
@@ -213,13 +216,16 @@ impl Plan {
         let steps = self.steps.iter().filter(is_of_layers).cloned().collect();
         let mut lenses = self.lenses.clone();
         lenses.iter_mut().for_each(|lens| lens.body = None);
-        let Self { haze, masks, clear_materials, .. } = *self;
-        let all = Self { lenses, steps, haze, masks, clear_materials, ..Self::default() };
+        let Self { haze, masks, clear_materials, partly, .. } = *self;
+        // What is there by halves is asked how much of it.
+        let epochs = if partly { self.epochs.clone() } else { Vec::new() };
+        let all =
+            Self { lenses, steps, haze, masks, clear_materials, timed: partly, partly, epochs, ..Self::default() };
         self.is_seen_through(handlers).then_some(all)
     }
 
     fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
-        self.clear_materials || self.steps_of(EffectKind::Opacity, handlers).next().is_some()
+        self.clear_materials || self.partly || self.steps_of(EffectKind::Opacity, handlers).next().is_some()
     }
 
     /// How many `vec4f` of the parameters it reads.

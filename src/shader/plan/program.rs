@@ -49,6 +49,10 @@ impl Program {
             Self::Specialised(plan) => plan.timed,
             Self::Uber(uber) => uber.timed,
         };
+        let partly = match self {
+            Self::Specialised(plan) => plan.partly,
+            Self::Uber(uber) => uber.partly,
+        };
         let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
@@ -75,6 +79,7 @@ impl Program {
             transparency,
             contents,
             timed,
+            partly,
             borders,
             by_ray,
         }
@@ -173,6 +178,8 @@ pub struct Parts {
     pub contents: bool,
     /// Moments, and when objects are there.
     pub timed: bool,
+    /// What is there by halves.
+    pub partly: bool,
     /// Soft borders of lenses.
     pub borders: bool,
     /// Borders of lenses along rays.

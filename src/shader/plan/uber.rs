@@ -40,6 +40,8 @@ pub struct Uber {
     pub contents: bool,
     /// Whether objects come and go.
     pub timed: bool,
+    /// Whether some may be there by halves.
+    pub partly: bool,
     /// The time operators of the scene's lenses, ascending, each once.
     pub epochs: Vec<u32>,
 }
@@ -54,6 +56,7 @@ impl Uber {
             leaves: self.leaves.clone(),
             contents: self.contents,
             timed: self.timed,
+            partly: self.partly,
             epochs: self.epochs.clone(),
             sides: self.sides,
             borders: self.dithers || (self.borders && self.is_seen_through(handlers)),
@@ -72,7 +75,7 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        let Self { sides, borders, by_ray, dithers, contents, timed, blends, .. } = *self;
+        let Self { sides, borders, by_ray, dithers, contents, timed, partly, blends, .. } = *self;
         let epochs = self.epochs.clone();
         let all = Self {
             effects,
@@ -84,6 +87,7 @@ impl Uber {
             dithers,
             contents,
             timed,
+            partly,
             epochs,
             ..Self::default()
         };
@@ -94,7 +98,7 @@ impl Uber {
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
         let transparency = self.is_seen_through(handlers);
         let effects = self.of(handlers, |kind| !kind.decides_visibility());
-        let untimed = Self { timed: false, epochs: Vec::new(), ..self };
+        let untimed = Self { timed: false, partly: false, epochs: Vec::new(), ..self };
         Self { effects, transparency, contents: false, clear_materials: false, ..untimed }
     }
 
@@ -102,13 +106,16 @@ impl Uber {
     /// through.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
-        let untimed = Self { timed: false, epochs: Vec::new(), contents: false, ..self.clone() };
-        let all = Self { effects, bodies: Vec::new(), lines: false, transparency: false, ..untimed };
+        let epochs = if self.partly { self.epochs.clone() } else { Vec::new() };
+        let timed = Self { timed: self.partly, epochs, contents: false, ..self.clone() };
+        let all = Self { effects, bodies: Vec::new(), lines: false, transparency: false, ..timed };
         self.is_seen_through(handlers).then_some(all)
     }
 
     fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
-        self.clear_materials || self.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Opacity)
+        self.clear_materials
+            || self.partly
+            || self.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Opacity)
     }
 
     fn of(&self, handlers: &[EffectDefinition], is_wanted: impl Fn(EffectKind) -> bool) -> Vec<u32> {

@@ -1,4 +1,5 @@
-//! Time (Tiesel chapter 4): the calendar against Python's, operators and loops; the sun against an almanac.
+//! Time (Tiesel chapter 4): the calendar against Python's, operators and loops; the sun against an almanac; what is there by halves.
 
 mod chains;
+mod partly;
 mod sun;
