@@ -24,6 +24,10 @@ fn is_before(a: Moment, b: Moment) -> bool {
     return a.hour < b.hour || (a.hour == b.hour && a.micro < b.micro);
 }
 
+fn are_same(a: Moment, b: Moment) -> bool {
+    return a.hour == b.hour && a.micro == b.micro;
+}
+
 fn in_calendar(at: Moment) -> Moment {
     if is_before(at, FIRST_MOMENT) {
         return FIRST_MOMENT;

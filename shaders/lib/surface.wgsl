@@ -20,6 +20,7 @@ const LIGHT_OF_TEXELS: u32 = 1u;    // of what follows: texels say how much of i
 const SECTION: u32 = 0x80000000u;
 const SECTION_OBJECT: u32 = 0x03ffffffu;    // all: of several
 const SURFACES_PER_ROW: u32 = 4096u;
+const OBJECT_BITS: u32 = 26u;       // of a texel's object; above them for which moment it is drawn (`lib/moving.wgsl`)
 
 struct Surface {
     object: u32,                // city object, or NO_OBJECT (the plain ground)
@@ -38,7 +39,8 @@ var<private> texel_opacity: f32 = 1.0;
 fn surface_at(number: u32) -> Surface {
     let texel = textureLoad(surfaces, vec2u(number % SURFACES_PER_ROW, number / SURFACES_PER_ROW), 0);
     let color = vec3f(unpack2x16float(texel.z), unpack2x16float(texel.w & 0xffffu).x);
-    return Surface(texel.x, texel.y, color, texel.w >> 16u);
+    let object = select(texel.x & ((1u << OBJECT_BITS) - 1u), NO_OBJECT, texel.x == NO_OBJECT);
+    return Surface(object, texel.y, color, texel.w >> 16u);
 }
 
 fn part_of(surface: Surface) -> u32 {

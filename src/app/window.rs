@@ -219,6 +219,7 @@ impl Window {
             up: self.spec.up,
             materials: self.spec.materials,
             joins: self.spec.joins.clone(),
+            timetables: self.spec.timetables.clone(),
             ..LoadOptions::default()
         };
         self.render_thread.open(self.spec.clone(), reading);

@@ -10,6 +10,7 @@ use crate::{
         lifetime::{Dating, Lifetimes},
         model::{Attribute, CityModel, Geometry, Lod, NONE, StringId, Value},
         side_table::JoinFacts,
+        timetable::TimetableFacts,
     },
     geom::Aabb,
     time::Granularity,
@@ -44,6 +45,8 @@ pub struct Facts {
     pub attributes: Vec<(String, AttributeFacts)>,
     /// Side tables that were joined, in order.
     pub joins: Vec<JoinFacts>,
+    /// The timetables by which objects move.
+    pub timetables: Vec<TimetableFacts>,
     /// When objects are there; `None`: no attribute says so.
     pub time: Option<TimeFacts>,
     /// Texture images.
@@ -260,6 +263,7 @@ pub fn facts(city: &CityModel, list: bool) -> Facts {
         lods: lod_facts(city),
         attributes: attribute_facts(city),
         joins: city.joins.clone(),
+        timetables: city.timetables.clone(),
         // Without being asked for nothing can be missing.
         time: TimeFacts::new(city, &Dating::default()).unwrap_or_default(),
         textures: TextureFacts {
@@ -695,7 +699,7 @@ mod tests {
         let json = serde_json::to_value(facts(&CityModel::default(), true)).unwrap();
         let empty = json!({
             "format": "", "version": null, "crs": null, "crs_raw": null, "extent": null,
-            "objects": {"total": 0, "by_type": {}, "list": []}, "lods": {}, "attributes": {}, "joins": [], "time": null,
+            "objects": {"total": 0, "by_type": {}, "list": []}, "lods": {}, "attributes": {}, "joins": [], "timetables": [], "time": null,
             "textures": {"declared": 0, "found": 0}, "faces_dropped": 0, "warnings": [],
         });
         assert_eq!(json, empty);

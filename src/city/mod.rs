@@ -24,6 +24,7 @@ pub mod obj;
 pub mod place;
 pub mod shown;
 pub mod side_table;
+pub mod timetable;
 pub mod spatial;
 mod strings;
 pub mod sun;

@@ -21,7 +21,7 @@ use glam::{DVec3, IVec3};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::{
-    city::{kept_measures::Measured, side_table::JoinFacts, strings::Strings, warning::Warnings},
+    city::{kept_measures::Measured, side_table::JoinFacts, strings::Strings, timetable::{Keyframes, TimetableFacts}, warning::Warnings},
     geom::{Aabb, plane::Plane},
 };
 
@@ -135,6 +135,10 @@ pub struct CityModel {
     pub faces_dropped: u64,
     /// The side tables whose attributes its objects have.
     pub joins: Vec<JoinFacts>,
+    /// The objects that move, ascending.
+    pub moves: Vec<Keyframes>,
+    /// The timetables by which they do.
+    pub timetables: Vec<TimetableFacts>,
     /// Members of the file that are not read, kept as JSON: (where, text).
     pub unknown: Vec<(String, String)>,
     /// The faults that were lived with.
@@ -519,6 +523,7 @@ impl CityModel {
             TextureImage::Bytes(_) | TextureImage::Missing(_) => None,
         };
         let tables = self.joins.iter().map(|join| join.file.clone());
+        let tables = tables.chain(self.timetables.iter().map(|table| table.file.clone()));
         self.read_beside.iter().cloned().chain(tables).chain(self.textures.iter().filter_map(file)).collect()
     }
 

@@ -49,6 +49,7 @@ pub fn load_city(spec: &CitySpec, global: &GlobalArguments) -> Outcome<(CityMode
         up: spec.up,
         materials: spec.materials,
         joins: spec.joins.clone(),
+        timetables: spec.timetables.clone(),
         ..LoadOptions::default()
     };
     load_with(&spec.files, &options, global)

@@ -39,6 +39,7 @@ pub fn text(answer: &Answer, sources: &[Source], paint: Paint) -> String {
     report.attributes(facts);
     report.time(facts);
     report.joins(facts);
+    report.timetables(facts);
     report.textures(facts);
     report.warnings(facts);
     report.list(facts);
@@ -256,6 +257,26 @@ impl Report {
         }
     }
 
+    fn timetables(&mut self, facts: &Facts) {
+        for (i, table) in facts.timetables.iter().enumerate() {
+            if i == 0 {
+                self.gap();
+            }
+            let name = cut(&clean(&table.file.display().to_string()), WIDTH - INDENT);
+            let name = self.paint.strong(&name);
+            self.line(if i == 0 { "Timetables" } else { "" }, &name);
+            let mut counts = vec![format!("{} objects move by {} rows", count(table.objects), count(table.rows))];
+            counts.extend(table.first.as_ref().zip(table.last.as_ref()).map(|(first, last)| format!("{first} to {last}")));
+            self.line("", &self.paint.faint(&counts.join(", ")));
+            if table.without_object > 0 {
+                let keys: Vec<String> = table.first_without_object.iter().map(|key| clean(key)).collect();
+                let line = format!("{} rows of no object: {}", count(table.without_object), keys.join(", "));
+                let line = self.paint.warning(&cut(&line, WIDTH - INDENT));
+                self.line("", &line);
+            }
+        }
+    }
+
     fn textures(&mut self, facts: &Facts) {
         let textures = facts.textures;
         if textures.declared > 0 {
@@ -395,6 +416,7 @@ mod tests {
             objects: ObjectFacts { total: 4, by_type: vec![], list: None },
             lods: vec![("2.2".into(), Default::default())],
             attributes: vec![("x".repeat(300), attribute)],
+            timetables: Vec::new(),
             joins: vec![crate::city::side_table::JoinFacts {
                 file: "z/".repeat(120).into(),
                 key: "\u{1b}k".repeat(90),

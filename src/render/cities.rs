@@ -59,6 +59,8 @@ impl DrawnSection<'_> {
     pub fn shows(&self, chunk: &Chunk, cut: Option<&Cut>, view: &View) -> bool {
         match self.content {
             None => self.details.show(chunk),
+            // What moves is there by itself.
+            Some(0) => true,
             Some(number) => cut.is_some_and(|cut| cut.hiding.shows(number, &chunk.bounds, view)),
         }
     }
@@ -151,7 +153,7 @@ impl<'a> Cities<'a> {
                 drawn.extend(own(&deformed.city, &[]));
             }
         }
-        let is_asked = |number| cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
+        let is_asked = |number| number == 0 || cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
         for placed in self.contents.placed(self.own).filter(|placed| is_asked(placed.number)) {
             let PlacedCity { city, number, has_shadow, chunks, offsets: [at_rest, moved], .. } = placed;
             let content = |city, chunks, offset| {

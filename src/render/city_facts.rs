@@ -9,7 +9,7 @@ use crate::{
         cells::{CellFigures, Detail, Details, triangles_in},
         city::{Chunk, Section, SectionKind, Texels, Translucency},
         frame::FrameInput,
-        hiding::reaches_of,
+        hiding::{Reach, reaches_of},
         sun_eye::{MapSize, SunEye},
     },
     view::{Frustum, View},
@@ -141,7 +141,9 @@ impl CityFacts<'_> {
         for content in &self.contents {
             let uses = input.operations.contents.iter().filter(|c| c.city == content.number);
             let reaches = uses.flat_map(|c| reaches_of(Some(c.lens), c.class, input.volumes, &input.view));
-            let room = reaches.fold(Aabb::EMPTY, |all, reach| all.union(reach.bounds()));
+            // What moves is in no lens.
+            let moves = (content.number == 0).then_some(Reach::Everywhere);
+            let room = reaches.chain(moves).fold(Aabb::EMPTY, |all, reach| all.union(reach.bounds()));
             for chunk in content.chunks.iter().copied().flatten().filter(|chunk| !chunk.is_around) {
                 let bounds = chunk.bounds;
                 let part = Aabb { min: bounds.min.max(room.min), max: bounds.max.min(room.max) };

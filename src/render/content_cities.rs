@@ -117,7 +117,7 @@ impl ContentCities {
             found.uses.push(ContentUse { lens: i as u32, class, city: number, clip, keeps_terrain });
             if !found.wanted.iter().any(|w| w.number == number) {
                 let first_object = found.first_object(stage.model, city.as_deref());
-                found.wanted.push(WantedContent { number, city, first_object, placement });
+                found.wanted.push(WantedContent { number, turn: 0, city, first_object, placement });
             }
         }
         self.cities.retain(|(source, _)| used.contains(source));
@@ -172,6 +172,7 @@ impl ContentCities {
                     footprints: OnceLock::new(),
                     ground,
                     is_own,
+                    moves: false,
                     has_shadow: true,
                     is_lit_as_before: false,
                     not_derived: [0; 3],
@@ -293,6 +294,7 @@ fn derived(id: u64, source: Arc<CityModel>, geometries: &[u32], how: &Derive, is
         footprints: OnceLock::new(),
         ground: None,
         is_own,
+        moves: false,
         has_shadow: !how.form.is_pressed(),
         is_lit_as_before: how.form.is_pressed(),
         not_derived: [made.unchanged, made.left_out, made.instead],

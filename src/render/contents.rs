@@ -47,6 +47,8 @@ pub struct ContentCity {
     pub ground: Option<Ground>,
     /// Whether its objects are those of the scene's own model.
     pub is_own: bool,
+    /// Whether it is something of the scene's own city that moves: without the plain ground.
+    pub moves: bool,
     /// Whether it throws shadows: what is pressed flat to the ground does not.
     pub has_shadow: bool,
     /// Whether its faces are lit by normals that they do not have where they lie.
@@ -65,8 +67,10 @@ impl ContentCity {
 /// A content that frames may show.
 #[derive(Clone, Debug)]
 pub struct WantedContent {
-    /// Its number, from 1.
+    /// Its number, from 1; 0: something of the scene's own city that moves.
     pub number: u32,
+    /// Of what moves, for which of the moments it is drawn, from 1; else 0.
+    pub turn: u32,
     /// Its city; `None`: the scene's own, as it is shown.
     pub city: Option<Arc<ContentCity>>,
     /// What its objects' indices are counted from.
@@ -81,8 +85,8 @@ impl WantedContent {
     }
 }
 
-/// A part of the table of surfaces: of one city, its objects counted from here, turned so.
-type Part = (u64, u32, DQuat);
+/// A part of the table of surfaces: of one city, its objects counted from here, turned so; and of what moves for which moment.
+type Part = (u64, u32, DQuat, u32);
 
 /// What the GPU holds of contents.
 #[derive(Debug, Default)]
@@ -176,7 +180,7 @@ impl Contents {
                 coplanar: &[],
                 is_lit_as_before: city.is_lit_as_before,
                 facades,
-                ground: if city.is_own && !city.is_derived() { ground } else { city.ground.as_ref() },
+                ground: if city.is_own && !city.moves && !city.is_derived() { ground } else { city.ground.as_ref() },
             };
             if !self.cities.iter().any(|(id, _)| *id == city.id) {
                 let coplanar = stacked_triangles(&city.model, &city.geometries, &city.heights);
@@ -196,8 +200,8 @@ impl Contents {
     fn set_parts(&mut self, gpu: &Gpu, own: &CityOnGpu, wanted: &[WantedContent]) -> Result<bool, GpuError> {
         let mut parts: Vec<Part> = Vec::new();
         for w in wanted {
-            let part = (w.id(), w.first_object, w.placement.rotation);
-            if part != (0, 0, DQuat::IDENTITY) && !parts.contains(&part) {
+            let part = (w.id(), w.first_object, w.placement.rotation, w.turn);
+            if part != (0, 0, DQuat::IDENTITY, 0) && !parts.contains(&part) {
                 parts.push(part);
             }
         }
@@ -211,7 +215,7 @@ impl Contents {
                 if is_turned { encode_normal(part.2 * decode_normal(normal)) } else { normal }
             };
             let entry = |s: &layout::Surface| layout::Surface {
-                object: if s.object == layout::NO_OBJECT { s.object } else { s.object + part.1 },
+                object: if s.object == layout::NO_OBJECT { s.object } else { layout::drawn_for(s.object + part.1, part.3) },
                 normal: turned(s.normal),
                 ..*s
             };
@@ -229,7 +233,7 @@ impl Contents {
         let shown = wanted.iter().map(|w| {
             let placement = w.placement;
             let world = World { city: w.id(), placement, is_own: w.city.as_ref().is_none_or(|city| city.is_own) };
-            let first_surface = self.first_surface(own, (world.city, w.first_object, placement.rotation));
+            let first_surface = self.first_surface(own, (world.city, w.first_object, placement.rotation, w.turn));
             let same = before.iter().position(|s| s.world == world);
             let chunks = same.map_or_else(
                 || {
@@ -253,7 +257,8 @@ impl Contents {
             return Some(layout::Surface::new(object.unwrap_or(layout::NO_OBJECT), 0, [0.0; 3], 0));
         }
         let table = if self.surfaces.is_some() { &self.table } else { &own.buffers.surface_table };
-        table.get(number as usize).copied()
+        let entry = table.get(number as usize)?;
+        Some(layout::Surface { object: layout::object_of(entry.object), ..*entry })
     }
 
     /// The cities beside the scene's own that the GPU holds.

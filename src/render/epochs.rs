@@ -162,7 +162,7 @@ impl Epochs {
     }
 
     /// The moments of all combinations of the lenses that may hold some of an object, each once; `None`: too many.
-    fn moments_of(&self, lenses: Met) -> Option<Vec<Option<Moment>>> {
+    pub fn moments_of(&self, lenses: Met) -> Option<Vec<Option<Moment>>> {
         let mut moments: Vec<Option<Moment>> = self.own.iter().map(|(moment, _)| *moment).collect();
         for (bit, steps) in self.operators.chunk_by(|a, b| a.0 == b.0).enumerate() {
             if !has_bit(lenses.may, bit) {
@@ -190,8 +190,14 @@ impl Epochs {
     }
 
     /// What effects read of objects, from its first word on: `lib/lifetime.wgsl` says how it lies. Then, for each operator, where its words
-    /// begin. `lifetimes`: of the scene's own city, then of contents, as their objects follow each other.
-    pub fn words(&self, lifetimes: &[Arc<Lifetimes>], met: &MetLenses) -> (Vec<u32>, Vec<u32>) {
+    /// begin. `lifetimes`: of the scene's own city, then of contents, as their objects follow each other; `moving`: the moments for which
+    /// something that moves is drawn.
+    pub fn words(
+        &self,
+        lifetimes: &[Arc<Lifetimes>],
+        met: &MetLenses,
+        moving: &[Option<Moment>],
+    ) -> (Vec<u32>, Vec<u32>) {
         let of = |moment: Option<Moment>| moment.map_or(TIMELESS, Moment::words);
         let [first, last] = self.range.map_or([None; 2], |range| range.map(Some));
         // What is gone by less shows yet; ends of months make a few days of difference.
@@ -207,6 +213,8 @@ impl Epochs {
         words.extend([self.combinations() as u32, 0]);
         words.extend([0, self.own.len() as u32, 1]);
         words.extend([self.ghosts.past, self.ghosts.future].iter().flat_map(|span| span.words()));
+        words.push(words.len() as u32 + 1);
+        words.extend(moving.iter().flat_map(|moment| of(*moment)));
         let mut begins = Vec::new();
         for (_, operator) in &self.operators {
             begins.push(words.len() as u32);

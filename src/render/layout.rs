@@ -47,6 +47,19 @@ impl CityVertex {
     }
 }
 
+/// Bits of the object of a surface; above them stands for which moment it is drawn: `lib/surface.wgsl` has as many.
+const OBJECT_BITS: u32 = 26;
+
+/// An object, drawn for one of the moments of what moves (from 1; 0: for all), as a texel of the table of surfaces has it.
+pub fn drawn_for(object: u32, turn: u32) -> u32 {
+    object | turn << OBJECT_BITS
+}
+
+/// The object of a texel.
+pub fn object_of(word: u32) -> u32 {
+    if word == NO_OBJECT { word } else { word & ((1 << OBJECT_BITS) - 1) }
+}
+
 /// One texel of the table of surfaces, decoded by `surface_at` in `lib/surface.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

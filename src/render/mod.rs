@@ -50,6 +50,7 @@ mod lens_volumes;
 pub mod light;
 mod module_text;
 pub mod moved;
+pub mod moving;
 mod occluding;
 mod occlusion;
 pub mod operations;

@@ -21,6 +21,7 @@ use crate::{
         self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
         PlanBody, PlanBorder, PlanContent, PlanEpoch, PlanLens, Scope, Step, Uber, effect::COMING_LINES,
     },
+    time::Moment,
 };
 
 /// Width of a lens outline, points.
@@ -112,6 +113,10 @@ pub struct SceneTime {
     pub lifetimes: Vec<Arc<Lifetimes>>,
     /// Which lenses may hold which objects.
     pub met: MetLenses,
+    /// Whether objects move, and the moments for which these are drawn.
+    pub moves: bool,
+    /// See `moves`.
+    pub moving: Vec<Option<Moment>>,
 }
 
 /// What operations are made of beside lenses and cities.
@@ -171,6 +176,8 @@ pub struct Operations {
     pub timed: bool,
     /// Whether some may be there by halves.
     pub partly: bool,
+    /// Whether some move.
+    pub moves: bool,
     /// Which objects of the scene's own city that is.
     pub presence: Arc<[Presence]>,
     /// What lenses do to the moment, bottom lens first.
@@ -253,13 +260,14 @@ impl Operations {
 
     /// Puts when objects are there among the values of objects, before all else: where it begins, shaders know.
     fn add_time(&mut self, time: &SceneTime, visible: &[bool]) {
-        self.timed = time.epochs.is_any() && time.lifetimes.iter().any(|lifetimes| lifetimes.has_any());
+        let has_any = || time.lifetimes.iter().any(|lifetimes| lifetimes.has_any());
+        self.timed = time.moves || (time.epochs.is_any() && has_any());
         if !self.timed {
             return;
         }
         self.partly = time.epochs.is_partly(&time.lifetimes);
         self.presence = time.lifetimes.first().map_or_else(Vec::new, |own| time.epochs.presence(own, &time.met)).into();
-        let (words, begins) = time.epochs.words(&time.lifetimes, &time.met);
+        let (words, begins) = time.epochs.words(&time.lifetimes, &time.met, &time.moving);
         let lenses = time.epochs.lenses();
         self.object_values = words;
         let operators = time.epochs.operators.iter().zip(begins);
@@ -268,7 +276,8 @@ impl Operations {
             EpochUse { lens: *lens, handler: operator.handler, words, bit }
         });
         self.epochs = uses.filter(|used| visible.get(used.lens as usize) == Some(&true)).collect();
-        (self.uber.timed, self.uber.partly) = (true, self.partly);
+        self.moves = time.moves;
+        (self.uber.timed, self.uber.partly, self.uber.moves) = (true, self.partly, self.moves);
         self.uber.epochs = each_once(time.epochs.operators.iter().map(|(_, operator)| operator.handler).collect());
     }
 
@@ -333,9 +342,9 @@ impl Operations {
         self.bodies.is_empty() && self.contents.is_empty() && self.list.iter().filter(is_of_lens).all(hides)
     }
 
-    /// Whether a lens of the scene has own content, in whatever frame.
+    /// Whether a lens of the scene has own content, in whatever frame, or something moves.
     pub fn may_show_contents(&self) -> bool {
-        self.uber.contents
+        self.uber.contents || self.uber.moves
     }
 
     /// Whether the context or an enabled lens draws lines.
@@ -354,8 +363,8 @@ impl Operations {
     /// What shading has to do outside all lenses.
     pub fn context_plan(&self, haze: bool) -> Plan {
         let steps = self.steps(&[], |_| None);
-        let Self { timed, partly, .. } = *self;
-        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, ..Plan::default() }
+        let Self { timed, partly, moves, .. } = *self;
+        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, moves, ..Plan::default() }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
@@ -393,8 +402,8 @@ impl Operations {
         };
         let epochs = self.epochs.iter().filter_map(epoch).collect();
         let lines = draws_lines(&steps);
-        let Self { timed, partly, .. } = *self;
-        Plan { lenses, steps, haze, masks, lines, contents, timed, partly, epochs, ..Plan::default() }
+        let Self { timed, partly, moves, .. } = *self;
+        Plan { lenses, steps, haze, masks, lines, contents, timed, partly, moves, epochs, ..Plan::default() }
     }
 
     /// The list as steps; `place` finds a lens in the plan.

@@ -33,6 +33,7 @@ use crate::{
         deformed::DeformedFigures,
         diagnostics,
         epochs::KnownLifetimes,
+        moving::MovingObjects,
         eye::PictureTile,
         footprints::OwnFootprints,
         frame::{Backend, FrameInput, ShaderPart},
@@ -183,6 +184,10 @@ pub struct Studio {
     footprints: OwnFootprints,
     /// When its objects, and those of contents, are there.
     pub(super) lifetimes: Arc<KnownLifetimes>,
+    /// What is drawn of the city where its file has it.
+    still: Vec<u32>,
+    /// What moves of it.
+    moving: Arc<MovingObjects>,
 }
 
 impl Studio {
@@ -198,11 +203,12 @@ impl Studio {
         };
         let geometries = shown_geometries(&model, cap);
         let ground = spec.ground.then(|| plain_ground(&model, &geometries)).flatten().map(Arc::new);
-        let coplanar = coplanar_triangles(&model, &geometries);
+        let (moving, still) = MovingObjects::new(&model, &geometries);
+        let coplanar = coplanar_triangles(&model, &still);
         let mut renderer = Renderer::new(gpu)?;
         let shown = Shown {
             model: &model,
-            geometries: &geometries,
+            geometries: &still,
             coplanar: &coplanar,
             ground: ground.as_deref(),
             is_lit_as_before: false,
@@ -217,6 +223,8 @@ impl Studio {
             objects: objects.len() as u64,
             model,
             geometries,
+            still,
+            moving: Arc::new(moving),
             ground,
             load: stats::Load::default(),
             backend: Backend::default(),
@@ -510,10 +518,10 @@ impl Studio {
 
     /// Puts the city on the GPU anew, with block models or without.
     fn set_city(&mut self, facades: bool, blocks: bool) -> Result<(), RenderError> {
-        let derived = || derive(&self.model, &self.geometries, &Derive { form: Form::Lod1, parts: true });
+        let derived = || derive(&self.model, &self.still, &Derive { form: Form::Lod1, parts: true });
         let blocks = blocks.then(derived);
-        let coplanar = coplanar_triangles(&self.model, &self.geometries);
-        let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_deref());
+        let coplanar = coplanar_triangles(&self.model, &self.still);
+        let (model, geometries, ground) = (&self.model, &self.still, self.ground.as_deref());
         let shown = Shown { model, geometries, coplanar: &coplanar, ground, is_lit_as_before: false, facades };
         self.renderer.set_city(&shown, blocks.as_ref().map(|blocks| &blocks.model))?;
         self.insets.clear();
@@ -532,7 +540,7 @@ impl Studio {
         if self.renderer.has_edges() || !edges {
             return Ok(());
         }
-        let (model, geometries, ground) = (&self.model, &self.geometries, self.ground.as_deref());
+        let (model, geometries, ground) = (&self.model, &self.still, self.ground.as_deref());
         let shown = Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false, facades };
         Ok(self.renderer.set_edges(&shown)?)
     }
@@ -572,6 +580,7 @@ impl Studio {
             footprints: &self.footprints,
             reading: &self.reading,
             lifetimes: &self.lifetimes,
+            moving: &self.moving,
         }
     }
 

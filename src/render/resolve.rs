@@ -20,6 +20,7 @@ use crate::{
         lens_volumes::{LensVolumes, Tools, volumes_of},
         light::{LEAST_SHADOW_SIZE, casts_shadows, occludes_sky, to_sun},
         moved::Moved,
+        moving::{Moving, MovingObjects},
         occlusion::Occlusion,
         operations::{AllTests, Beside, LensTables, MOST_FILTERS, Operations, SceneTime},
         parts::whole,
@@ -79,6 +80,8 @@ pub(super) struct Surroundings<'a> {
     pub reading: &'a LoadOptions,
     /// When objects of cities are there.
     pub lifetimes: &'a KnownLifetimes,
+    /// What moves of the city.
+    pub moving: &'a MovingObjects,
 }
 
 /// What a scene is in one view.
@@ -128,11 +131,13 @@ impl Surroundings<'_> {
         let sights = self.sights(scene, &eye, &deformations.moved, known);
         // What is moved may be anywhere.
         let seen = deformations.moved.is_nothing().then_some(&view);
-        let mut operations = self.operations(scene, &volumes, tests, &contents, sights, seen)?;
+        let (mut operations, moving) = self.operations(scene, &volumes, tests, &contents, sights, seen)?;
+        let mut contents = contents;
+        contents.wanted.extend(moving.wanted);
         add_members(&mut operations, &mut volumes, &self.models(&contents));
         check_counts(&operations, &volumes)?;
         let (own, moved) = (self.reach(), &deformations.moved);
-        let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved));
+        let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved)).union(moving.bounds);
         let view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
         Ok(Resolved { view, volumes, solids, operations, contents, deformations })
@@ -251,7 +256,7 @@ impl Surroundings<'_> {
         contents: &SceneContents,
         sights: Vec<Vec<u32>>,
         seen: Option<&View>,
-    ) -> Result<Operations, ResolveError> {
+    ) -> Result<(Operations, Moving), ResolveError> {
         let mut present = vec![false; scene.lenses.len()];
         for volume in volumes {
             present[volume.lens as usize] = true;
@@ -260,12 +265,16 @@ impl Surroundings<'_> {
         let (style, tables) = (&scene.style, LensTables { sights, footprints });
         let models = self.models(contents);
         let mut time = self.time(scene, contents)?;
-        time.met = self.met(&time.epochs, volumes, seen);
+        let places = places_of(&time.epochs, volumes, seen);
+        time.met = self.met(&places, seen);
+        let own = time.lifetimes.first().map(|own| &**own);
+        let moving = self.moving.at(self.model, &time.epochs, &places, own).map_err(ResolveError::Scene)?;
+        time.moving.clone_from(&moving.moments);
         let beside = Beside { tables: &tables, time: &time, point_px: scene.figure.point_px() };
         let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &beside);
         let mut operations = made.map_err(|error| ResolveError::Scene(error.to_string()))?;
         operations.contents.clone_from(&contents.uses);
-        Ok(operations)
+        Ok((operations, moving))
     }
 }
 
@@ -282,29 +291,10 @@ impl Surroundings<'_> {
         ))
     }
 
-    /// Which lenses with time operators may hold some of which objects, or hold all of them, as they stand in a view; without one any may hold any.
-    fn met(&self, epochs: &Epochs, volumes: &[LensVolume], view: Option<&View>) -> MetLenses {
-        let own = |lens: u32| volumes.iter().filter(move |volume| volume.lens == lens);
-        let boxes_of = |lens: u32| -> Option<Vec<Aabb>> {
-            let bounds = |volume: &LensVolume| {
-                let is_bounded = volume.region.is_bounded() && !volume.everywhere;
-                let view = view.filter(|_| is_bounded)?;
-                let bounds = volume.bounds_of_border(view);
-                let farthest = bounds.center().distance(view.camera.eye) + 0.5 * bounds.size().length();
-                // As far as places of fragments are rounded.
-                let off = rounded(farthest);
-                Some(Aabb { min: bounds.min - off, max: bounds.max + off })
-            };
-            own(lens).map(bounds).collect()
-        };
-        let places_of = |lens: u32| {
-            let is_plain = |volume: &&LensVolume| volume.border.is_none() && !volume.everywhere;
-            let convex = own(lens).filter(is_plain).filter_map(convex).cloned().collect();
-            LensPlaces { around: boxes_of(lens), convex, eye: view.map_or(DVec3::ZERO, |view| view.camera.eye) }
-        };
-        let lenses: Vec<LensPlaces> = epochs.lenses().into_iter().map(places_of).collect();
-        let objects = view.filter(|_| !lenses.is_empty()).map(|_| self.object_boxes());
-        MetLenses::new(objects.as_deref(), &lenses)
+    /// Which lenses, by their places, may hold some of which objects, or hold all of them, as they stand in a view; without one any may hold any.
+    fn met(&self, places: &[LensPlaces], view: Option<&View>) -> MetLenses {
+        let objects = view.filter(|_| !places.is_empty()).map(|_| self.object_boxes());
+        MetLenses::new(objects.as_deref(), places)
     }
 
     /// The box around what is shown of each object, metres; empty without any.
@@ -320,7 +310,8 @@ impl Surroundings<'_> {
     /// Which moments show, and when objects are there.
     fn time(&self, scene: &Scene, contents: &SceneContents) -> Result<SceneTime, ResolveError> {
         let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;
-        if !epochs.is_any() {
+        let moves = !self.moving.is_empty();
+        if !epochs.is_any() && !moves {
             return Ok(SceneTime::default());
         }
         let dating = &scene.city.dating;
@@ -330,8 +321,31 @@ impl Surroundings<'_> {
             self.lifetimes.of(model, dating).unwrap_or_else(|_| Arc::new(Lifetimes::undated(model)))
         };
         let lifetimes = std::iter::once(own).chain(contents.models.iter().map(of_content)).collect();
-        Ok(SceneTime { epochs, lifetimes, met: MetLenses::default() })
+        Ok(SceneTime { epochs, lifetimes, moves, ..SceneTime::default() })
     }
+}
+
+/// Where the lenses with time operators are in a view, ascending; without one they may be anywhere.
+fn places_of(epochs: &Epochs, volumes: &[LensVolume], view: Option<&View>) -> Vec<LensPlaces> {
+    let own = |lens: u32| volumes.iter().filter(move |volume| volume.lens == lens);
+    let boxes_of = |lens: u32| -> Option<Vec<Aabb>> {
+        let bounds = |volume: &LensVolume| {
+            let is_bounded = volume.region.is_bounded() && !volume.everywhere;
+            let view = view.filter(|_| is_bounded)?;
+            let bounds = volume.bounds_of_border(view);
+            let farthest = bounds.center().distance(view.camera.eye) + 0.5 * bounds.size().length();
+            // As far as places of fragments are rounded.
+            let off = rounded(farthest);
+            Some(Aabb { min: bounds.min - off, max: bounds.max + off })
+        };
+        own(lens).map(bounds).collect()
+    };
+    let places_of = |lens: u32| {
+        let is_plain = |volume: &&LensVolume| volume.border.is_none() && !volume.everywhere;
+        let convex = own(lens).filter(is_plain).filter_map(convex).cloned().collect();
+        LensPlaces { around: boxes_of(lens), convex, eye: view.map_or(DVec3::ZERO, |view| view.camera.eye) }
+    };
+    epochs.lenses().into_iter().map(places_of).collect()
 }
 
 /// Puts the objects that lenses mean among the object values.

@@ -82,6 +82,8 @@ pub struct CitySpec {
     pub dating: Dating,
     /// Side tables whose attributes its objects get.
     pub joins: Vec<Join>,
+    /// Timetables by which its objects move.
+    pub timetables: Vec<PathBuf>,
 }
 
 impl CitySpec {
@@ -101,6 +103,7 @@ impl Default for CitySpec {
             ground: true,
             dating: Dating::default(),
             joins: Vec::new(),
+            timetables: Vec::new(),
         }
     }
 }

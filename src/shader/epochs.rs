@@ -96,7 +96,7 @@ pub(super) fn specialised(
         }
         text.push_str("    }\n");
     }
-    text + "    return moment;\n}\n\n" + &exists(asked, plan.partly)
+    text + "    return moment;\n}\n\n" + &exists(asked, plan.partly, plan.moves)
 }
 
 /// The same from the invoker table; `runs` says whether an invoker, `by`, runs there. `handler` of an invoker is the operator's number,
@@ -144,24 +144,31 @@ pub(super) fn uber(uber: &Uber, handlers: &[EffectDefinition], asked: &Asked, ru
 
 "
     );
-    text + &exists(asked, uber.partly)
+    text + &exists(asked, uber.partly, uber.moves)
 }
 
-/// `exists`: whether an object is there at a place; of what may be there by halves, `presence`: how much of it, and `comes`: whether it will be
-/// there soon.
-fn exists(asked: &Asked, partly: bool) -> String {
+/// `exists`: whether an object is there at a place; of what may be there by halves, `presence`: how much of it. What moves is there where the
+/// moment shows for which it is drawn.
+fn exists(asked: &Asked, partly: bool, moves: bool) -> String {
     let Asked { subject, parameters, arguments, suffix } = asked;
+    let turn = if moves { format!("    let turn = turn_of({subject}.surface);\n") } else { String::new() };
+    let (stays, is_its) = if moves {
+        ("turn == 0u && ", "(turn == 0u || are_same(at, moment_of_turn(turn))) && ")
+    } else {
+        ("", "")
+    };
     if partly {
         return format!(
             "fn presence{suffix}({parameters}) -> f32 {{
     let lifetime = lifetime_of({subject}.object);
-    if is_ghost(lifetime) {{
+    let undated = is_ghost(lifetime);
+{turn}    if {stays}undated {{
         return UNDATED_OPACITY;
     }}
-    if is_always(lifetime) {{
+    if {stays}is_always(lifetime) {{
         return 1.0;
     }}
-    if is_never(lifetime) {{
+    if !undated && is_never(lifetime) {{
         return 0.0;
     }}
     var sum = 0.0;
@@ -169,7 +176,9 @@ fn exists(asked: &Asked, partly: bool) -> String {
     let count = combinations();
     for (var i = 0u; i < count; i++) {{
         combination = i;
-        let share = share_there(lifetime, moment{suffix}_at({arguments}));
+        let at = moment{suffix}_at({arguments});
+        let there = select(share_there(lifetime, at), UNDATED_OPACITY, undated);
+        let share = select(0.0, there, {is_its}true);
         sum += share * weight_of_combination();
         is_whole = is_whole && share == 1.0;
     }}
@@ -182,13 +191,14 @@ fn exists(asked: &Asked, partly: bool) -> String {
     format!(
         "fn exists({parameters}) -> bool {{
     let lifetime = lifetime_of({subject}.object);
-    if is_always(lifetime) {{
+{turn}    if {stays}is_always(lifetime) {{
         return true;
     }}
     if is_never(lifetime) {{
         return false;
     }}
-    return holds(lifetime, moment_at({arguments}));
+    let at = moment_at({arguments});
+    return {is_its}holds(lifetime, at);
 }}
 
 "

@@ -6,7 +6,7 @@ use crate::shader::{
         BLEND, BORDER, BORDER_WIDTH, CITIES, CLASS, CLEAR, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION,
         COMBINED_SPRITE, DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FORM, FRAGMENT, File,
         GLASS, INSTANTS, LENS, LENS_SPRITE, LIFETIME, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, MOMENT,
-        OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT,
+        MOVING, OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT,
         SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE, SURFACE, TEXEL, TRANSPARENCY, VIEW, VIEW_UNIFORM,
     },
     plan::program::Program,
@@ -84,12 +84,12 @@ pub(super) fn of_objects(program: &Program) -> Vec<File> {
 /// What is known of when they are there.
 fn of_time(program: &Program) -> Vec<File> {
     let parts = program.has();
-    used(&[(parts.timed, MOMENT), (parts.timed, LIFETIME), (parts.partly, INSTANTS)])
+    used(&[(parts.timed, MOMENT), (parts.timed, LIFETIME), (parts.partly, INSTANTS), (parts.moves, MOVING)])
 }
 
 /// Where vertices stand: of the scene's own city, or also of contents.
 pub(super) fn vertices(program: &Program) -> File {
-    if program.has().contents { CITIES } else { ONE_CITY }
+    if program.has().has_cities() { CITIES } else { ONE_CITY }
 }
 
 /// The lens tests that a program makes.

@@ -72,7 +72,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
 
 /// Where vertices stand.
 fn cities(program: &Program, eye: Eye) -> String {
-    match (eye, program.has().contents) {
+    match (eye, program.has().has_cities()) {
         (Eye::Picture | Eye::Layers | Eye::Fragments, false) => String::new(),
         (Eye::Picture | Eye::Layers, true) => contents::binding(1, 3, "city"),
         // Group 1 is that of shading.

@@ -103,6 +103,7 @@ files! {
     MOMENT = "lib/moment.wgsl";
     LIFETIME = "lib/lifetime.wgsl";
     INSTANTS = "lib/instants.wgsl";
+    MOVING = "lib/moving.wgsl";
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
     TRANSPARENCY = "lib/transparency.wgsl";

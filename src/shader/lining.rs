@@ -32,7 +32,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
             format!("@group(2) @binding(2) var<uniform> parameters: array<vec4f, {MOST_SLOTS}>;\n{tests}\n")
         }
     };
-    if program.has().contents {
+    if program.has().has_cities() {
         text.push_str(&contents::binding(3, 1, "city"));
         text.push('\n');
     }

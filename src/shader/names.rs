@@ -10,9 +10,11 @@ pub(super) fn of_effects(program: &Program) -> String {
 
 /// The effects that take fragments away, behind the name of a pass.
 pub(super) fn of_hidden(program: &Program) -> String {
-    let contents = program.has().contents.then_some("contents".to_owned());
+    let has = program.has();
+    let contents = has.contents.then_some("contents".to_owned());
+    let contents = contents.into_iter().chain(has.moves.then_some("moving".to_owned()));
     let effects = Some(of_effects(program)).filter(|names| !names.is_empty());
-    let what: Vec<String> = contents.into_iter().chain(effects).collect();
+    let what: Vec<String> = contents.chain(effects).collect();
     format!(" cut{} ({})", of_backend(program), what.join(", "))
 }
 

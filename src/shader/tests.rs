@@ -117,6 +117,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         clear_materials: seed.is_multiple_of(4),
         timed: seed % 3 < 2,
         partly: seed % 3 == 1,
+        moves: seed % 3 < 2 && seed % 7 < 3,
         epochs: epochs_of(seed),
         ..Plan::default()
     };
@@ -142,6 +143,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         contents: !plan.contents.is_empty(),
         timed: plan.timed,
         partly: plan.partly,
+        moves: plan.moves,
         epochs: Program::Specialised(plan.clone()).epochs(),
     };
     let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();

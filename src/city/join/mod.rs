@@ -1,6 +1,9 @@
 //! Side tables: attributes of city objects that stand in another file, joined by id.
 
 mod table;
+mod timetable;
+
+use std::path::PathBuf;
 
 use rustc_hash::FxHashMap;
 
@@ -145,6 +148,14 @@ impl Owners for FxHashMap<String, Vec<u32>> {
 /// See [`CityModel::join`].
 pub fn join_all(model: &mut CityModel, joins: &[Join]) -> Result<(), LoadError> {
     joins.iter().try_for_each(|join| model.join(join))
+}
+
+/// Reads all timetables of a city, in order.
+///
+/// # Errors
+/// See [`CityModel::add_timetable`].
+pub fn read_timetables(model: &mut CityModel, files: &[PathBuf]) -> Result<(), LoadError> {
+    files.iter().try_for_each(|file| model.add_timetable(file))
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ pub use options::{LFS_POINTER, LoadOptions, Sibling, Up};
 pub use progress::{Progress, Quiet, Stage};
 
 use crate::{
-    city::{build::ModelBuilder, join::join_all, load::sniff::Format, model::CityModel, texture, warning::WarningCode},
+    city::{build::ModelBuilder, join::{join_all, read_timetables}, load::sniff::Format, model::CityModel, texture, warning::WarningCode},
     geom::Aabb,
 };
 
@@ -57,6 +57,7 @@ pub fn load_with_stats(
     model.shown_materials = options.materials;
     texture::settle(&mut model);
     join_all(&mut model, &options.joins)?;
+    read_timetables(&mut model, &options.timetables)?;
     tell_degrees(&mut model, paths);
     stats.build = start.elapsed();
     Ok((model, stats))

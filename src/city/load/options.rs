@@ -63,6 +63,8 @@ pub struct LoadOptions {
     pub materials: Materials,
     /// Side tables whose attributes its objects get.
     pub joins: Vec<Join>,
+    /// Timetables by which its objects move.
+    pub timetables: Vec<PathBuf>,
     /// Folders in which files were looked for by other spellings.
     pub listings: Listings,
 }

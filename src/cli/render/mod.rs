@@ -225,6 +225,7 @@ pub fn open(
         up: scene.city.up,
         materials: scene.city.materials,
         joins: scene.city.joins.clone(),
+        timetables: scene.city.timetables.clone(),
         ..LoadOptions::default()
     };
     let (model, load) = load::load_with(&scene.city.files, &reading, global)?;

@@ -36,7 +36,7 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
         },
         |city, given| {
             let must_exist = given.reader.options().must_exist;
-            city.files = given.reader.files(given.fields, must_exist);
+            city.files = given.reader.files(given.fields, given.key, must_exist);
         },
     ),
     Row::<CitySpec>::new(
@@ -138,6 +138,24 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
                 row::read(JOIN_ROWS, &fields, given.reader, &mut join).then_some(join)
             };
             city.joins = nodes.iter().enumerate().filter_map(of).collect();
+        },
+    ),
+    Row::<CitySpec>::new(
+        key(
+            "timetables",
+            Kind::Texts,
+            "none",
+            "",
+            "Tables by which its objects move, CSV with the columns `id`, `t`, `x`, `y`, `z`, `yaw`, `scale`; see Moving objects.",
+            "[\"timetable.csv\"]",
+        ),
+        |city, options| {
+            let files = city.timetables.iter().map(|file| Data::Text(options.written(file)));
+            (!city.timetables.is_empty()).then(|| Data::list(files))
+        },
+        |city, given| {
+            let must_exist = given.reader.options().must_exist;
+            city.timetables = given.reader.files(given.fields, given.key, must_exist);
         },
     ),
 ];

@@ -40,7 +40,7 @@ const CONTENT_ROWS: &[Row<Content>] = &[
             (!content.files.is_empty())
                 .then(|| Data::list(content.files.iter().map(|file| Data::Text(options.written(file)))))
         },
-        |content, given| content.files = given.reader.files(given.fields, false),
+        |content, given| content.files = given.reader.files(given.fields, given.key, false),
     ),
     Row::<Content>::new(
         key(

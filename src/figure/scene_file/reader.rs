@@ -63,11 +63,11 @@ impl<'o> Reader<'o> {
         self.path(fields, key, fields.node(key)?)
     }
 
-    /// The files that `files` lists.
-    pub fn files(&mut self, fields: &Fields, must_exist: bool) -> Vec<PathBuf> {
+    /// The files that a key lists.
+    pub fn files(&mut self, fields: &Fields, list: &str, must_exist: bool) -> Vec<PathBuf> {
         let mut files = Vec::new();
-        for (i, node) in fields.node("files").and_then(Node::list).unwrap_or_default().iter().enumerate() {
-            let key = format!("files.{i}");
+        for (i, node) in fields.node(list).and_then(Node::list).unwrap_or_default().iter().enumerate() {
+            let key = format!("{list}.{i}");
             match self.path(fields, &key, node) {
                 Some(path) if must_exist && is_absent(&path) => {
                     let mut message = format!("there is no file or folder {}", node.quoted());

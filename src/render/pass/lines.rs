@@ -144,7 +144,7 @@ fn drawn_edges<'a>(frame: &FrameContext<'a>, cut: Option<&Cut>) -> Vec<PlacedEdg
         parts.into_iter().flatten()
     };
     let own = edges_of(cities.own, &World::OWN, None, [0; 2]);
-    let is_asked = |number| cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
+    let is_asked = |number| number == 0 || cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
     let contents = cities.contents.placed(cities.own).filter(|placed| is_asked(placed.number));
     let contents = contents.flat_map(|placed| edges_of(placed.city, placed.world, Some(placed.number), placed.offsets));
     own.chain(contents).collect()

@@ -50,6 +50,8 @@ pub struct Plan {
     pub timed: bool,
     /// Whether some may be there by halves: at some of several moments, or as ghosts.
     pub partly: bool,
+    /// Whether some move, each drawn for the moments that may show of it.
+    pub moves: bool,
     /// The time operators of its lenses, bottom lens first.
     pub epochs: Vec<PlanEpoch>,
     /// How places are told apart, for the techniques that are kept for reference; `None`: by accumulation.
@@ -172,8 +174,8 @@ impl Plan {
             rules.any(|(step, _)| matches!(step.scope, Scope::Lens(l, _) if l == lens))
         };
         (0..).zip(&mut lenses).for_each(|(i, lens)| lens.border = lens.border.filter(|b| b.dithers || fades(i)));
-        let Self { clear_materials, timed, partly, .. } = *self;
-        Some(Self { lenses, steps, contents, epochs, clear_materials, timed, partly, ..Self::default() })
+        let Self { clear_materials, timed, partly, moves, .. } = *self;
+        Some(Self { lenses, steps, contents, epochs, clear_materials, timed, partly, moves, ..Self::default() })
     }
 
     /// The part that lines go through; `None` where no effect draws lines.
@@ -186,6 +188,7 @@ impl Plan {
             contents: self.contents.clone(),
             timed: self.timed,
             partly: self.partly,
+            moves: self.moves,
             epochs: self.epochs.clone(),
             ..Self::default()
         })
@@ -204,7 +207,7 @@ impl Plan {
         self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
         self.contents.clear();
         self.epochs.clear();
-        (self.timed, self.partly) = (false, false);
+        (self.timed, self.partly, self.moves) = (false, false, false);
         self
     }
 
@@ -217,10 +220,11 @@ impl Plan {
         let mut lenses = self.lenses.clone();
         lenses.iter_mut().for_each(|lens| lens.body = None);
         let Self { haze, masks, clear_materials, partly, .. } = *self;
+        let moves = partly && self.moves;
         // What is there by halves is asked how much of it.
         let epochs = if partly { self.epochs.clone() } else { Vec::new() };
         let all =
-            Self { lenses, steps, haze, masks, clear_materials, timed: partly, partly, epochs, ..Self::default() };
+            Self { lenses, steps, haze, masks, clear_materials, timed: partly, partly, moves, epochs, ..Self::default() };
         self.is_seen_through(handlers).then_some(all)
     }
 

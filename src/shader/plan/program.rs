@@ -53,6 +53,10 @@ impl Program {
             Self::Specialised(plan) => plan.partly,
             Self::Uber(uber) => uber.partly,
         };
+        let moves = match self {
+            Self::Specialised(plan) => plan.moves,
+            Self::Uber(uber) => uber.moves,
+        };
         let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
@@ -80,6 +84,7 @@ impl Program {
             contents,
             timed,
             partly,
+            moves,
             borders,
             by_ray,
         }
@@ -128,6 +133,13 @@ impl Program {
             Self::Specialised(plan) => plan.effects(),
             Self::Uber(uber) => uber.effects.clone(),
         }
+    }
+}
+
+impl Parts {
+    /// Whether cities stand elsewhere than the scene's own: contents of lenses, what moves.
+    pub fn has_cities(&self) -> bool {
+        self.contents || self.moves
     }
 }
 
@@ -180,6 +192,8 @@ pub struct Parts {
     pub timed: bool,
     /// What is there by halves.
     pub partly: bool,
+    /// What moves.
+    pub moves: bool,
     /// Soft borders of lenses.
     pub borders: bool,
     /// Borders of lenses along rays.

@@ -42,6 +42,8 @@ pub struct Uber {
     pub timed: bool,
     /// Whether some may be there by halves.
     pub partly: bool,
+    /// Whether some move.
+    pub moves: bool,
     /// The time operators of the scene's lenses, ascending, each once.
     pub epochs: Vec<u32>,
 }
@@ -57,6 +59,7 @@ impl Uber {
             contents: self.contents,
             timed: self.timed,
             partly: self.partly,
+            moves: self.moves,
             epochs: self.epochs.clone(),
             sides: self.sides,
             borders: self.dithers || (self.borders && self.is_seen_through(handlers)),
@@ -75,7 +78,7 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        let Self { sides, borders, by_ray, dithers, contents, timed, partly, blends, .. } = *self;
+        let Self { sides, borders, by_ray, dithers, contents, timed, partly, moves, blends, .. } = *self;
         let epochs = self.epochs.clone();
         let all = Self {
             effects,
@@ -88,6 +91,7 @@ impl Uber {
             contents,
             timed,
             partly,
+            moves,
             epochs,
             ..Self::default()
         };
@@ -98,7 +102,7 @@ impl Uber {
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
         let transparency = self.is_seen_through(handlers);
         let effects = self.of(handlers, |kind| !kind.decides_visibility());
-        let untimed = Self { timed: false, partly: false, epochs: Vec::new(), ..self };
+        let untimed = Self { timed: false, partly: false, moves: false, epochs: Vec::new(), ..self };
         Self { effects, transparency, contents: false, clear_materials: false, ..untimed }
     }
 
@@ -107,7 +111,8 @@ impl Uber {
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
         let epochs = if self.partly { self.epochs.clone() } else { Vec::new() };
-        let timed = Self { timed: self.partly, epochs, contents: false, ..self.clone() };
+        let moves = self.partly && self.moves;
+        let timed = Self { timed: self.partly, moves, epochs, contents: false, ..self.clone() };
         let all = Self { effects, bodies: Vec::new(), lines: false, transparency: false, ..timed };
         self.is_seen_through(handlers).then_some(all)
     }

@@ -1,0 +1,168 @@
+//! Objects that move by timetables (after Tiesel §4.3): each is a city of its own on the GPU, which is drawn once for each moment at which some
+//! of it may show, as it stands then. Of what is drawn for a moment stays what is where that moment shows.
+
+use std::sync::{Arc, OnceLock};
+
+use glam::{DQuat, DVec3};
+use rustc_hash::FxHashMap;
+
+use crate::{
+    city::{CityModel, lifetime::Lifetimes, timetable::Pose},
+    geom::Aabb,
+    render::{
+        contents::{ContentCity, WantedContent},
+        epochs::{Epochs, LensPlaces, MetLenses},
+        standing::Placement,
+    },
+    time::Moment,
+};
+
+/// Moments for which something that moves is drawn in a picture, at most: as many as the table of surfaces tells apart.
+pub const MOST_TURNS: usize = 62;
+
+/// The objects of a city that move.
+#[derive(Debug, Default)]
+pub struct MovingObjects {
+    all: Vec<MovingObject>,
+}
+
+/// An object that moves, with its parts.
+#[derive(Debug)]
+struct MovingObject {
+    /// Index among the model's.
+    keyframes: usize,
+    /// What is shown of it.
+    city: Arc<ContentCity>,
+    /// The box around that as its file has it, metres.
+    bounds: Aabb,
+}
+
+/// What moves in a picture.
+#[derive(Debug, Default)]
+pub struct Moving {
+    /// What is drawn, and where.
+    pub wanted: Vec<WantedContent>,
+    /// The moments for which it is.
+    pub moments: Vec<Option<Moment>>,
+    /// The box around all of it, metres.
+    pub bounds: Aabb,
+}
+
+impl MovingObjects {
+    /// Those of a city, and which of its geometries stay where they are.
+    pub fn new(model: &Arc<CityModel>, geometries: &[u32]) -> (Self, Vec<u32>) {
+        if model.moves.is_empty() {
+            return (Self::default(), geometries.to_vec());
+        }
+        let moves: FxHashMap<u32, usize> = model.moves.iter().zip(0..).map(|(of, i)| (of.object, i)).collect();
+        let mut own: Vec<Vec<u32>> = vec![Vec::new(); model.moves.len()];
+        let mut still = Vec::new();
+        for &geometry in geometries {
+            match moved_with(model, model.geometries[geometry as usize].object, &moves) {
+                Some(i) => own[i].push(geometry),
+                None => still.push(geometry),
+            }
+        }
+        let shown = own.into_iter().enumerate().filter(|(_, geometries)| !geometries.is_empty());
+        let all = shown.map(|(keyframes, geometries)| {
+            let bounds = |g: &u32| model.geometries[*g as usize].bounds;
+            let bounds = geometries.iter().map(bounds).fold(Aabb::EMPTY, |all, own| all.union(own));
+            let city = ContentCity {
+                // Names of contents count from 1.
+                id: u64::MAX - keyframes as u64,
+                model: model.clone(),
+                source: model.clone(),
+                geometries,
+                heights: Vec::new(),
+                made_of: (Vec::new(), false),
+                footprints: OnceLock::new(),
+                ground: None,
+                is_own: true,
+                moves: true,
+                has_shadow: true,
+                is_lit_as_before: false,
+                not_derived: [0; 3],
+            };
+            MovingObject { keyframes, city: Arc::new(city), bounds }
+        });
+        (Self { all: all.collect() }, still)
+    }
+
+    /// Whether nothing moves.
+    pub fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// What moves in a picture: each object at each moment that shows at a place where it stands then. `places`: of the lenses with operators.
+    ///
+    /// # Errors
+    /// More moments than can be told apart.
+    pub fn at(
+        &self,
+        model: &CityModel,
+        epochs: &Epochs,
+        places: &[LensPlaces],
+        lifetimes: Option<&Lifetimes>,
+    ) -> Result<Moving, String> {
+        let mut found = Moving { bounds: Aabb::EMPTY, ..Moving::default() };
+        if self.is_empty() {
+            return Ok(found);
+        }
+        let anywhere = MetLenses::new(None, places);
+        let too_many = || {
+            format!(
+                "objects move, and lenses show more than {MOST_TURNS} moments where they may be, or combinations of as many; fewer lenses with operators \
+                 would be right"
+            )
+        };
+        let all = epochs.moments_of(anywhere.of(0)).ok_or_else(too_many)?;
+        for object in &self.all {
+            let keyframes = &model.moves[object.keyframes];
+            for at in &all {
+                let is_there = |lifetimes: &Lifetimes| lifetimes.of[keyframes.object as usize].holds(*at);
+                if !lifetimes.is_none_or(is_there) {
+                    continue;
+                }
+                let placement = placement(&keyframes.pose(*at));
+                let bounds = placement.boxed(&object.bounds);
+                let met = MetLenses::new(Some(&[bounds]), places);
+                let shown = epochs.moments_of(met.of(0)).ok_or_else(too_many)?;
+                if shown.binary_search(at).is_err() {
+                    continue;
+                }
+                let known = found.moments.iter().position(|known| known == at);
+                let turn = known.unwrap_or(found.moments.len());
+                if known.is_none() {
+                    found.moments.push(*at);
+                }
+                found.bounds = found.bounds.union(bounds);
+                found.wanted.push(WantedContent {
+                    number: 0,
+                    city: Some(object.city.clone()),
+                    first_object: 0,
+                    placement,
+                    turn: 1 + turn as u32,
+                });
+            }
+        }
+        if found.moments.len() > MOST_TURNS { Err(too_many()) } else { Ok(found) }
+    }
+}
+
+/// Which of the objects that move an object moves with: itself, or what it is a part of.
+fn moved_with(model: &CityModel, object: u32, moves: &FxHashMap<u32, usize>) -> Option<usize> {
+    let mut at = object;
+    // No family is deeper than there are objects.
+    for _ in 0..model.objects.len() {
+        if let Some(&i) = moves.get(&at) {
+            return Some(i);
+        }
+        at = *model.objects[at as usize].parents.first()?;
+    }
+    None
+}
+
+fn placement(pose: &Pose) -> Placement {
+    let rotation = if pose.turn == 0.0 { DQuat::IDENTITY } else { DQuat::from_axis_angle(DVec3::Z, pose.turn) };
+    Placement { from: pose.from, to: pose.to, rotation, scale: pose.scale }
+}
