@@ -4,6 +4,7 @@ pub mod build;
 pub mod builtin;
 pub mod cityjson;
 pub mod closed;
+pub mod compare;
 pub mod coplanar;
 pub mod crs;
 pub mod derived;

@@ -3,6 +3,7 @@
 //! Text from files is shown with control characters replaced: an id must not be able to steer the terminal.
 
 mod cells;
+mod compare;
 mod crs;
 mod sights;
 
@@ -21,6 +22,7 @@ use crate::{
 };
 
 pub use cells::wrap;
+pub use compare::compare_text;
 
 /// Columns at most.
 const WIDTH: usize = 100;

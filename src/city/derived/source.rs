@@ -193,6 +193,8 @@ impl Target {
             sources: source.sources.clone(),
             crs: source.crs.clone(),
             crs_raw: source.crs_raw.clone(),
+            frames: source.frames,
+            steps: source.steps.clone(),
             strings,
             objects,
             materials: source.materials.clone(),

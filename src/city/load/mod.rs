@@ -97,6 +97,7 @@ pub fn load_raw(
     options.roots.sort();
     options.roots.dedup();
     let mut builder = ModelBuilder::default();
+    (builder.zone, builder.frame) = (options.frames.zone, options.frames.local);
     let mut stats = LoadStats::default();
     let mut refusals = Vec::new();
     for (i, file) in files.iter().enumerate() {
