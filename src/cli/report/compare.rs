@@ -65,17 +65,15 @@ impl Report {
         self.gap();
         let columns = [("", Align::Left), ("all", Align::Right), ("without parents", Align::Right)];
         let mut table = Table::new(&columns);
-        let rows: [(&str, fn(&Counts) -> u64); 6] = [
-            ("added", |counts| counts.added),
-            ("removed", |counts| counts.removed),
-            ("changed", |counts| counts.changed),
-            ("  geometry", |counts| counts.changed_geometry),
-            ("  attributes", |counts| counts.changed_attributes),
-            ("unchanged", |counts| counts.unchanged),
-        ];
-        for (name, of) in rows {
+        let mut row = |name: &str, of: fn(&Counts) -> u64| {
             table.row([name.to_owned(), count(of(&facts.objects)), count(of(&facts.roots))]);
-        }
+        };
+        row("added", |counts| counts.added);
+        row("removed", |counts| counts.removed);
+        row("changed", |counts| counts.changed);
+        row("  geometry", |counts| counts.changed_geometry);
+        row("  attributes", |counts| counts.changed_attributes);
+        row("unchanged", |counts| counts.unchanged);
         self.table("Objects", &table);
         if facts.types_changed > 0 {
             let line = format!("{} have another type", count(facts.types_changed));
