@@ -7,6 +7,7 @@ use super::*;
 use crate::city::{
     build::{Lattice, ModelBuilder, Polygons, Pool, RawGeometry, RawObject},
     crs::{Frames, UtmZone},
+    load::{LoadOptions, Quiet, load},
     model::{Attribute, Lod, NONE, Surface, Value},
     test_city::{LATTICE, builder, terrain},
 };
@@ -458,6 +459,22 @@ fn other_places_are_no_states_of_one_city() {
     };
     assert_eq!(error(&zone(31), &zone(32)), Some(CompareError::Frames));
     assert_eq!(error(&zone(31), &zone(31)), None);
+}
+
+#[test]
+fn degrees_are_compared_in_one_frame() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/citydata/crs-degrees.city.json");
+    let in_frames = |frames: Frames| {
+        let options = LoadOptions { frames, ..LoadOptions::default() };
+        load(&[file.into()], &options, &Quiet).expect("a city")
+    };
+    let own = in_frames(Frames::default());
+    let zone = own.frames.zone.expect("a zone");
+    let other = in_frames(Frames { zone: Some(UtmZone { number: zone.number + 1, ..zone }), local: None });
+    assert_eq!(Comparison::new(&own, &other, &Key::Id), Err(CompareError::Frames));
+    let again = in_frames(other.frames);
+    assert_eq!(compared(&other, &again).objects.unchanged, again.objects.len() as u64);
+    assert!(again.geometries.iter().zip(&own.geometries).any(|(a, b)| a.bounds != b.bounds));
 }
 
 #[test]

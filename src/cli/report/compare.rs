@@ -130,6 +130,9 @@ impl Report {
     fn changes(&mut self, facts: &CompareFacts) {
         let Some(list) = &facts.list else { return };
         self.gap();
+        if list.is_empty() {
+            return self.line("Changes", "none: all objects are the same");
+        }
         let columns = [("", Align::Left), ("id", Align::Left), ("type", Align::Left), ("what", Align::Left)];
         let mut table = Table::new(&columns);
         for change in list {
