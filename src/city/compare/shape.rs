@@ -22,7 +22,8 @@ use crate::city::{
     model::{CityModel, Geometry, Lod},
 };
 
-/// What floating-point coordinates (glTF, OBJ with many decimals, degrees, earth-centred ones) have for a step, metres.
+/// What coordinates that are on no grid of their file (glTF, degrees, earth-centred ones) have for a step, metres, and at most those of
+/// OBJ: how many decimals are written there says little.
 pub const FLOAT_STEP_M: f64 = 0.001;
 /// Beside half a step: models keep positions to 4 µm, which both states may be off.
 const NOISE_M: f64 = 1.0 / 65_536.0;
@@ -51,7 +52,12 @@ struct Soup {
 /// The step of the grid that a geometry stands on, as it is compared.
 pub(super) fn step_of(model: &CityModel, geometry: &Geometry) -> DVec3 {
     let step = model.steps.get(geometry.grid as usize).copied().unwrap_or(Lattice::FINE.step);
-    if step == Lattice::FINE.step { DVec3::splat(FLOAT_STEP_M) } else { step }
+    match geometry.lod {
+        _ if step == Lattice::FINE.step => DVec3::splat(FLOAT_STEP_M),
+        // Of a format without levels of detail.
+        Lod::NONE => step.min(DVec3::splat(FLOAT_STEP_M)),
+        _ => step,
+    }
 }
 
 /// How far corners may be apart, along each axis, that stand on grids of these steps.

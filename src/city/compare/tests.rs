@@ -318,6 +318,15 @@ fn levels_of_detail_count() {
     let of = |lod| Made { lod: Some(lod), ..Made::at("a", [0; 3]) };
     assert!(differ(&of("1.2"), &of("2.2")));
     assert!(!differ(&of("none"), &of("2.2")) && !differ(&of("1.2"), &of("none")), "a format without them");
+    // What is written in whole metres is not known to half a metre.
+    let metres = |step: f64, x: i64| {
+        let points = Made::at("a", [0; 3]).points.iter().map(|p| p.map(|c| c / 1000 * (1.0 / step) as i64)).collect();
+        let mut made = Made { points, ..of("none") };
+        made.points[7][0] += x;
+        city_on(Lattice { step: DVec3::splat(step), origin: DVec3::ZERO }, &[made])
+    };
+    let states = [metres(0.1, 0), metres(0.1, 3)].map(|new| compared(&metres(1.0, 0), &new).objects);
+    assert_eq!(states.map(|counts| [counts.unchanged, counts.changed]), [[1, 0], [0, 1]]);
     assert!(differ(&Made::bare("a"), &of("2")) && !differ(&Made::bare("a"), &Made::bare("a")));
 }
 
