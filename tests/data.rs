@@ -4,6 +4,8 @@
 
 #[path = "data/best_views.rs"]
 mod best_views;
+#[path = "data/compare.rs"]
+mod compare;
 #[path = "data/derived.rs"]
 mod derived;
 #[path = "data/edges.rs"]
@@ -68,6 +70,7 @@ fn main() {
     let arguments = Arguments::from_args();
     let rooms = [
         best_views::trials(),
+        compare::trials(),
         derived::trials(),
         edges::trials(),
         faces::trials(),

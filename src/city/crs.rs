@@ -101,6 +101,16 @@ pub struct UtmZone {
     pub is_south: bool,
 }
 
+/// The metric frames that the coordinates of a city were put in, where its files are in degrees or earth-centred. Two cities are in the same
+/// places if these are equal.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Frames {
+    /// The zone that degrees were projected to.
+    pub zone: Option<UtmZone>,
+    /// The frame that earth-centred coordinates were turned to.
+    pub local: Option<LocalFrame>,
+}
+
 /// Semi-major axis of GRS 80 and WGS 84, metres.
 const SEMI_MAJOR_M: f64 = 6_378_137.0;
 /// Flattening of GRS 80.

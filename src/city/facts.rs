@@ -232,7 +232,8 @@ pub struct TreeLine {
     pub count: u64,
 }
 
-fn as_map<S: Serializer, T: Serialize>(pairs: &[(String, T)], serializer: S) -> Result<S::Ok, S::Error> {
+/// Writes pairs as an object, in their order.
+pub fn as_map<S: Serializer, T: Serialize>(pairs: &[(String, T)], serializer: S) -> Result<S::Ok, S::Error> {
     let mut map = serializer.serialize_map(Some(pairs.len()))?;
     for (key, value) in pairs {
         map.serialize_entry(key, value)?;
@@ -450,6 +451,11 @@ impl Tree {
 }
 
 // --- attributes -------------------------------------------------------------------------------
+
+/// A value as `info --json` has it.
+pub fn to_json(city: &CityModel, value: Value) -> serde_json::Value {
+    Key::of(value).map_or(serde_json::Value::Null, |key| key.json(city))
+}
 
 /// A value as it is counted: 1 and 1.0 are the same, as in JSON readers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -777,6 +783,7 @@ mod tests {
                 polygons: 5,
                 dropped: 1,
                 triangles: 10,
+                grid: 0,
                 tiles: 0..0,
                 bounds: Aabb::EMPTY,
             });

@@ -4,6 +4,7 @@ pub mod build;
 pub mod builtin;
 pub mod cityjson;
 pub mod closed;
+pub mod compare;
 pub mod coplanar;
 pub mod crs;
 pub mod derived;
@@ -24,7 +25,6 @@ pub mod obj;
 pub mod place;
 pub mod shown;
 pub mod side_table;
-pub mod timetable;
 pub mod spatial;
 mod strings;
 pub mod sun;
@@ -32,6 +32,7 @@ pub mod synth;
 #[cfg(test)]
 pub(crate) mod test_city;
 pub mod texture;
+pub mod timetable;
 pub mod validate;
 pub mod warning;
 

@@ -21,7 +21,14 @@ use glam::{DVec3, IVec3};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
 use crate::{
-    city::{kept_measures::Measured, side_table::JoinFacts, strings::Strings, timetable::{Keyframes, TimetableFacts}, warning::Warnings},
+    city::{
+        crs::Frames,
+        kept_measures::Measured,
+        side_table::JoinFacts,
+        strings::Strings,
+        timetable::{Keyframes, TimetableFacts},
+        warning::Warnings,
+    },
     geom::{Aabb, plane::Plane},
 };
 
@@ -90,6 +97,8 @@ pub struct CityModel {
     pub crs: Option<String>,
     /// The reference system as the file spells it.
     pub crs_raw: Option<String>,
+    /// The metric frames that degrees and earth-centred coordinates were put in.
+    pub frames: Frames,
     /// Every distinct string once: types, attribute names, attribute texts.
     pub strings: Strings,
     /// City objects in byte order of the files; the position is the object index of the contract.
@@ -102,6 +111,8 @@ pub struct CityModel {
     pub attributes: Vec<Attribute>,
     /// Geometries, grouped by object in object order, LoD ascending as read.
     pub geometries: Vec<Geometry>,
+    /// The steps of the grids that vertices stand on, metres along each axis; [`Geometry::grid`] is an index into it.
+    pub steps: Vec<DVec3>,
     /// The surfaces that triangles are part of: an object's semantic surface in one material.
     pub surfaces: Vec<Surface>,
     /// Semantic surfaces that carry attributes or links of their own.
@@ -298,6 +309,8 @@ pub struct Geometry {
     pub triangles: u32,
     /// Polygons that were refused (each with a warning); repeated ones are not among them.
     pub dropped: u32,
+    /// The grid that its vertices stand on, in [`CityModel::steps`].
+    pub grid: u32,
     /// Its tiles, in [`CityModel::tiles`].
     pub tiles: Range<u32>,
     /// Box around all vertices its polygons name (bad coordinates left out), metres.

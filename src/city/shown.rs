@@ -89,6 +89,7 @@ mod tests {
                     polygons: 1,
                     triangles: 1,
                     dropped: 0,
+                    grid: 0,
                     tiles: 0..0,
                     bounds: Aabb::EMPTY,
                 });

@@ -99,6 +99,7 @@ impl CityModel {
 
     fn validate_geometry(&self, geometry: &Geometry) -> Result<(), String> {
         ensure((geometry.object as usize) < self.objects.len(), || "its object".into())?;
+        ensure((geometry.grid as usize) < self.steps.len(), || "its grid".into())?;
         ensure(fits(&geometry.tiles, self.tiles.len()), || "its tiles".into())?;
         let tiles = &self.tiles[geometry.tiles.start as usize..geometry.tiles.end as usize];
         let indices: u64 = tiles.iter().map(|t| u64::from(t.indices.end - t.indices.start)).sum();

@@ -1,5 +1,6 @@
 //! `veduta info`: the first thing one runs on an unknown file.
 
+mod compare;
 mod place;
 mod sights;
 
@@ -11,6 +12,7 @@ use serde::Serialize;
 use crate::{
     city::{
         CityModel,
+        crs::Frames,
         facts::{self, Facts, TimeFacts},
         shown::shown_geometries,
         side_table::Join,
@@ -30,6 +32,7 @@ use crate::{
     visibility,
 };
 
+pub use compare::{CompareFacts, ListedChange, StateFacts};
 pub use place::{Place, PlaceFacts};
 pub use sights::{LandmarkFacts, ViewFacts};
 
@@ -46,6 +49,10 @@ Examples:
                                                 the height of ground and roof at a place, and whose it is
   veduta info --join register.csv,pand city.city.json
                                                 with the attributes of a side table, and what was joined
+  veduta info --compare 2019.city.json 2024.city.json --list
+                                                what was added, removed and changed between two states
+  veduta info --compare --key identificatie old.city.jsonl new.city.jsonl
+                                                the same where ids were given anew: matched by an attribute
   veduta info --json city.glb | jq .objects.total
   zcat city.json.gz | veduta info -             from a pipe
 
@@ -58,6 +65,12 @@ pub struct Arguments {
     /// City files or folders of them, `-` for stdin; several make one city. Or a scene (.toml), whose city is meant, with its side tables
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
+    /// Compare two states of a city, the earlier FILE first, the later second: what was added, removed and changed
+    #[arg(long, conflicts_with_all = ["from", "until", "best_views", "scene", "at", "landmarks"])]
+    pub compare: bool,
+    /// With --compare: match objects by this attribute, not by their ids
+    #[arg(long, value_name = "ATTRIBUTE", requires = "compare")]
+    pub key: Option<String>,
     /// Join a side table, CSV or GeoJSON, by its column KEY (else the first, or `id`) and the objects' ids, or their ATTRIBUTE
     #[arg(long, value_name = "FILE[,KEY[,ATTRIBUTE]]")]
     pub join: Vec<SideTable>,
@@ -70,7 +83,7 @@ pub struct Arguments {
     /// Write one JSON object instead of text
     #[arg(long)]
     pub json: bool,
-    /// Name every object, with type, parents, levels of detail, and where it is
+    /// Name every object, with type, parents, levels of detail, and where it is; with --compare each that is not the same, and why
     #[arg(long)]
     pub list: bool,
     /// List the views from which this object (with its parts) is seen best, best first
@@ -127,14 +140,14 @@ impl FromStr for SideTable {
 }
 
 /// The city that is meant: that of a scene, or files.
-fn spec(arguments: &Arguments, global: &GlobalArguments) -> Outcome<CitySpec> {
-    let scene = scene_among(&arguments.files);
-    if scene.is_some() && arguments.files.len() > 1 {
+fn spec(files: &[PathBuf], arguments: &Arguments, global: &GlobalArguments) -> Outcome<CitySpec> {
+    let scene = scene_among(files);
+    if scene.is_some() && files.len() > 1 {
         return Err(Failure::usage(
             "info: one scene (.toml) or any number of city files; a scene names its files itself",
         ));
     }
-    let (scene, _) = render::scene_of(&arguments.files, &[], &render::options_of(scene, global))?;
+    let (scene, _) = render::scene_of(files, &[], &render::options_of(scene, global))?;
     let mut spec = scene.city;
     spec.joins.extend(arguments.join.iter().map(|table| table.0.clone()));
     spec.dating.from = arguments.from.clone().or(spec.dating.from);
@@ -144,8 +157,11 @@ fn spec(arguments: &Arguments, global: &GlobalArguments) -> Outcome<CitySpec> {
 
 /// Loads the files and says what is in them.
 pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
-    let spec = spec(arguments, global)?;
-    let (city, _) = load::load_city(&spec, global)?;
+    if arguments.compare {
+        return compare::run(arguments, global);
+    }
+    let spec = spec(&arguments.files, arguments, global)?;
+    let (city, _) = load::load_city(&spec, Frames::default(), global)?;
     let best_views = arguments.best_views.as_ref().map(|id| best_views(&city, id)).transpose()?;
     let landmarks = arguments.landmarks.map(|n| landmarks(&city, n));
     let at = arguments.at.map(|Place(at)| PlaceFacts::new(&city, at));

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::{
     city::{
         CityModel,
+        crs::Frames,
         load::{self, LoadOptions, LoadStats, Stage},
     },
     cli::{
@@ -41,8 +42,8 @@ pub fn load(files: &[PathBuf], global: &GlobalArguments) -> Outcome<(CityModel, 
     load_with(files, &options, global)
 }
 
-/// Loads the city that a scene, or a command, means.
-pub fn load_city(spec: &CitySpec, global: &GlobalArguments) -> Outcome<(CityModel, LoadStats)> {
+/// Loads the city that a scene, or a command, means, in the frames of another city where it has any.
+pub fn load_city(spec: &CitySpec, frames: Frames, global: &GlobalArguments) -> Outcome<(CityModel, LoadStats)> {
     let options = LoadOptions {
         allow_outside: global.allow_outside,
         roots: named_folders(&spec.files),
@@ -50,6 +51,7 @@ pub fn load_city(spec: &CitySpec, global: &GlobalArguments) -> Outcome<(CityMode
         materials: spec.materials,
         joins: spec.joins.clone(),
         timetables: spec.timetables.clone(),
+        frames,
         ..LoadOptions::default()
     };
     load_with(&spec.files, &options, global)

@@ -3,6 +3,7 @@
 //! Text from files is shown with control characters replaced: an id must not be able to steer the terminal.
 
 mod cells;
+mod compare;
 mod crs;
 mod sights;
 
@@ -21,6 +22,7 @@ use crate::{
 };
 
 pub use cells::wrap;
+pub use compare::compare_text;
 
 /// Columns at most.
 const WIDTH: usize = 100;
@@ -266,7 +268,9 @@ impl Report {
             let name = self.paint.strong(&name);
             self.line(if i == 0 { "Timetables" } else { "" }, &name);
             let mut counts = vec![format!("{} objects move by {} rows", count(table.objects), count(table.rows))];
-            counts.extend(table.first.as_ref().zip(table.last.as_ref()).map(|(first, last)| format!("{first} to {last}")));
+            counts.extend(
+                table.first.as_ref().zip(table.last.as_ref()).map(|(first, last)| format!("{first} to {last}")),
+            );
             self.line("", &self.paint.faint(&counts.join(", ")));
             if table.without_object > 0 {
                 let keys: Vec<String> = table.first_without_object.iter().map(|key| clean(key)).collect();

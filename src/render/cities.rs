@@ -153,7 +153,8 @@ impl<'a> Cities<'a> {
                 drawn.extend(own(&deformed.city, &[]));
             }
         }
-        let is_asked = |number| number == 0 || cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
+        let is_asked =
+            |number| number == 0 || cut.is_some_and(|cut| cut.plan.contents.iter().any(|c| c.city == number));
         for placed in self.contents.placed(self.own).filter(|placed| is_asked(placed.number)) {
             let PlacedCity { city, number, has_shadow, chunks, offsets: [at_rest, moved], .. } = placed;
             let content = |city, chunks, offset| {

@@ -215,7 +215,11 @@ impl Contents {
                 if is_turned { encode_normal(part.2 * decode_normal(normal)) } else { normal }
             };
             let entry = |s: &layout::Surface| layout::Surface {
-                object: if s.object == layout::NO_OBJECT { s.object } else { layout::drawn_for(s.object + part.1, part.3) },
+                object: if s.object == layout::NO_OBJECT {
+                    s.object
+                } else {
+                    layout::drawn_for(s.object + part.1, part.3)
+                },
                 normal: turned(s.normal),
                 ..*s
             };

@@ -152,11 +152,8 @@ pub(super) fn uber(uber: &Uber, handlers: &[EffectDefinition], asked: &Asked, ru
 fn exists(asked: &Asked, partly: bool, moves: bool) -> String {
     let Asked { subject, parameters, arguments, suffix } = asked;
     let turn = if moves { format!("    let turn = turn_of({subject}.surface);\n") } else { String::new() };
-    let (stays, is_its) = if moves {
-        ("turn == 0u && ", "(turn == 0u || are_same(at, moment_of_turn(turn))) && ")
-    } else {
-        ("", "")
-    };
+    let (stays, is_its) =
+        if moves { ("turn == 0u && ", "(turn == 0u || are_same(at, moment_of_turn(turn))) && ") } else { ("", "") };
     if partly {
         return format!(
             "fn presence{suffix}({parameters}) -> f32 {{

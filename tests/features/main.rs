@@ -9,6 +9,7 @@ mod call_outs;
 mod captions;
 mod citydata;
 mod cli;
+mod compare;
 mod contents;
 mod counts;
 mod deformations;

@@ -79,7 +79,8 @@ fn over(model: CityModel, spec: &CitySpec) -> Studio {
 /// A studio over a scene's city.
 pub fn of_scene(scene: &Scene) -> Studio {
     let (joins, timetables) = (scene.city.joins.clone(), scene.city.timetables.clone());
-    let options = LoadOptions { up: scene.city.up, materials: scene.city.materials, joins, timetables, ..LoadOptions::default() };
+    let options =
+        LoadOptions { up: scene.city.up, materials: scene.city.materials, joins, timetables, ..LoadOptions::default() };
     let model = load(&scene.city.files, &options, &Quiet).expect("the files load");
     over(model, &scene.city)
 }

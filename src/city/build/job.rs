@@ -200,6 +200,7 @@ fn add_geometry(raw: &Shape<'_>, repeated: &[bool], context: &Context<'_>, scrat
         polygons: repeated.len() as u32,
         triangles: (chunk.planes.len() - first_triangle) as u32,
         dropped,
+        grid: grid.class,
         tiles,
         bounds,
     });

@@ -55,6 +55,7 @@ pub(super) fn finish_geometries(model: &mut CityModel, staging: PackedStaging) {
     });
     let State { built, spare, .. } = line.state.into_inner().unwrap_or_else(PoisonError::into_inner);
     spare.into_iter().for_each(Chunk::give_back);
+    model.steps = context.classes.iter().map(|lattice| lattice.step).collect();
     drop(context);
     staging.give_back();
     if let Some(built) = built {

@@ -31,7 +31,7 @@ use glam::DVec3;
 use self::staging::PackedStaging;
 use crate::city::{
     build::raw::KeptObject,
-    crs::{LocalFrame, UtmZone},
+    crs::{Frames, LocalFrame, UtmZone},
     memory::give_back,
     model::{Attribute, CityModel, CityObject, Source, StringId, Surface, SurfaceDetail},
     warning::WarningCode,
@@ -137,6 +137,7 @@ impl ModelBuilder {
         self.finish_objects();
         let mut staging = std::mem::take(&mut self.staging);
         let mut model = self.model;
+        model.frames = Frames { zone: self.zone, local: self.frame };
         staging.parts.retain(|part| {
             let known = (part.object as usize) < model.objects.len();
             if !known {

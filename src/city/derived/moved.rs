@@ -391,6 +391,7 @@ pub(super) fn append(target: &mut Target, source: &Source, chunks: impl IntoIter
             .iter()
             .map(|vertex| Vertex { surface: target.surface(source.model, vertex.surface), ..*vertex })
             .collect();
+        let grids: Vec<u32> = source.model.steps.iter().map(|step| target.grid(*step)).collect();
         let all = &mut target.model;
         let (first_vertex, first_index) = (all.vertices.len() as u32, all.indices.len() as u32);
         let (first_tile, first_geometry) = (all.tiles.len() as u32, all.geometries.len() as u32);
@@ -403,8 +404,11 @@ pub(super) fn append(target: &mut Target, source: &Source, chunks: impl IntoIter
             texcoords: if tile.texcoords == NONE { NONE } else { tile.texcoords + first_texcoord },
             ..tile
         }));
-        all.geometries
-            .extend(chunk.geometries.into_iter().map(|g| Geometry { tiles: later(&g.tiles, first_tile), ..g }));
+        all.geometries.extend(chunk.geometries.into_iter().map(|g| Geometry {
+            tiles: later(&g.tiles, first_tile),
+            grid: grids.get(g.grid as usize).copied().unwrap_or_default(),
+            ..g
+        }));
         let cuts = chunk.cut_polygons.into_iter();
         all.cut_polygons.extend(cuts.map(|cut| CutTriangle { triangle: cut.triangle + first_triangle, ..cut }));
         all.vertices.extend(vertices);

@@ -193,6 +193,7 @@ impl Target {
             sources: source.sources.clone(),
             crs: source.crs.clone(),
             crs_raw: source.crs_raw.clone(),
+            frames: source.frames,
             strings,
             objects,
             materials: source.materials.clone(),
@@ -215,6 +216,16 @@ impl Target {
             model.surfaces.push(Surface { kind, detail: NONE, ..of });
             model.surfaces.len() as u32 - 1
         })
+    }
+
+    /// The grid of this step.
+    pub fn grid(&mut self, step: DVec3) -> u32 {
+        let steps = &mut self.model.steps;
+        let known = steps.iter().position(|known| *known == step);
+        known.unwrap_or_else(|| {
+            steps.push(step);
+            steps.len() - 1
+        }) as u32
     }
 
     /// Adds a surface of its own.

@@ -19,7 +19,8 @@ use crate::{
 };
 
 /// The columns of a timetable beside `id`, and which may be missing.
-const COLUMNS: [(&str, bool); 6] = [("t", false), ("x", false), ("y", false), ("z", false), ("yaw", true), ("scale", true)];
+const COLUMNS: [(&str, bool); 6] =
+    [("t", false), ("x", false), ("y", false), ("z", false), ("yaw", true), ("scale", true)];
 /// What a row has where a column says nothing: no turn, as large as it is.
 const UNSAID: [f64; 2] = [0.0, 1.0];
 
@@ -33,7 +34,8 @@ impl CityModel {
         let bytes = input::read(file)?.bytes;
         let table = Table::new(file, &bytes, "id")?;
         let columns = columns_of(file, &table)?;
-        let numbers: FxHashMap<String, u32> = self.objects.iter().map(|object| object.id.to_string()).zip(0..).collect();
+        let numbers: FxHashMap<String, u32> =
+            self.objects.iter().map(|object| object.id.to_string()).zip(0..).collect();
         let mut facts = TimetableFacts {
             file: file.to_owned(),
             rows: 0,
@@ -89,7 +91,10 @@ fn columns_of(file: &Path, table: &Table) -> Result<Vec<Option<usize>>, LoadErro
         None => Ok(columns),
         Some(at) => Err(LoadError::new(
             file,
-            format!("a timetable has the columns id, t, x, y, z and, if need be, yaw and scale; \"{}\" is missing", COLUMNS[at].0),
+            format!(
+                "a timetable has the columns id, t, x, y, z and, if need be, yaw and scale; \"{}\" is missing",
+                COLUMNS[at].0
+            ),
         )),
     }
 }
@@ -103,7 +108,9 @@ fn keyframe(columns: &[Option<usize>], cells: &Cells) -> Result<Keyframe, String
         let name = COLUMNS[which].0;
         match (which, cell) {
             (0, Cell::Text(text)) => at = moment(text).map_err(|message| wrong = Some(message)).ok(),
-            (0, Cell::Integer(number)) => at = moment(&number.to_string()).map_err(|message| wrong = Some(message)).ok(),
+            (0, Cell::Integer(number)) => {
+                at = moment(&number.to_string()).map_err(|message| wrong = Some(message)).ok()
+            }
             (0, Cell::Number(number)) => at = moment(&number.to_string()).map_err(|message| wrong = Some(message)).ok(),
             (which, Cell::Integer(number)) if which > 0 => values[which] = Some(number as f64),
             (which, Cell::Number(number)) if which > 0 => values[which] = Some(number),

@@ -21,7 +21,14 @@ pub use options::{LFS_POINTER, LoadOptions, Sibling, Up};
 pub use progress::{Progress, Quiet, Stage};
 
 use crate::{
-    city::{build::ModelBuilder, join::{join_all, read_timetables}, load::sniff::Format, model::CityModel, texture, warning::WarningCode},
+    city::{
+        build::ModelBuilder,
+        join::{join_all, read_timetables},
+        load::sniff::Format,
+        model::CityModel,
+        texture,
+        warning::WarningCode,
+    },
     geom::Aabb,
 };
 
@@ -98,6 +105,7 @@ pub fn load_raw(
     options.roots.sort();
     options.roots.dedup();
     let mut builder = ModelBuilder::default();
+    (builder.zone, builder.frame) = (options.frames.zone, options.frames.local);
     let mut stats = LoadStats::default();
     let mut refusals = Vec::new();
     for (i, file) in files.iter().enumerate() {

@@ -9,7 +9,7 @@ use std::{
 
 use glam::DVec3;
 
-use crate::city::{model::Materials, side_table::Join};
+use crate::city::{crs::Frames, model::Materials, side_table::Join};
 
 /// Names of the files of a folder by their lower-case spelling; of several the first by name.
 type Listing = Arc<HashMap<String, OsString>>;
@@ -65,6 +65,8 @@ pub struct LoadOptions {
     pub joins: Vec<Join>,
     /// Timetables by which its objects move.
     pub timetables: Vec<PathBuf>,
+    /// The metric frames of another city that this one is to be put in, too; one that is open is chosen by the files.
+    pub frames: Frames,
     /// Folders in which files were looked for by other spellings.
     pub listings: Listings,
 }

@@ -223,8 +223,18 @@ impl Plan {
         let moves = partly && self.moves;
         // What is there by halves is asked how much of it.
         let epochs = if partly { self.epochs.clone() } else { Vec::new() };
-        let all =
-            Self { lenses, steps, haze, masks, clear_materials, timed: partly, partly, moves, epochs, ..Self::default() };
+        let all = Self {
+            lenses,
+            steps,
+            haze,
+            masks,
+            clear_materials,
+            timed: partly,
+            partly,
+            moves,
+            epochs,
+            ..Self::default()
+        };
         self.is_seen_through(handlers).then_some(all)
     }
 
