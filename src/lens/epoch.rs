@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use crate::{
-    lens::{effect_use::Parameter, handled::Handled},
+    lens::{definition::Lens, effect_use::Parameter, handled::Handled, nearest::did_you_mean},
     shader::{
         effect::{
             AskedBy, DefaultValue, EffectDefinition, Fallback, ParameterDefinition, ParameterKind, number_asked_by,
@@ -189,6 +189,7 @@ const SET: &str = "set";
 const LOOP: &str = "loop";
 const AGGREGATE: &str = "aggregate";
 const GHOST: &str = "ghost";
+const LINK: &str = "link";
 
 /// A moment that comes again and again: `from + (clock − start) · rate mod (until − from)`.
 struct Loop {
@@ -250,6 +251,44 @@ pub fn moment_after(steps: &[Handled], at: Option<Moment>, clock_s: f64) -> Resu
     })
 }
 
+/// Steps with those of other lenses in place of links to these, and the delay of each link behind them.
+///
+/// # Errors
+/// A link to no lens, or one that leads back to itself.
+pub fn linked(steps: &[Handled], lenses: &[Lens]) -> Result<Vec<Handled>, String> {
+    let mut way = Vec::new();
+    linked_on(steps, lenses, &mut way)
+}
+
+/// The same on the way through some lenses.
+fn linked_on<'a>(steps: &[Handled], lenses: &'a [Lens], way: &mut Vec<&'a str>) -> Result<Vec<Handled>, String> {
+    let mut all = Vec::with_capacity(steps.len());
+    for step in steps {
+        if step.handler != LINK {
+            all.push(step.clone());
+            continue;
+        }
+        let Some(Parameter::Text(to)) = step.parameters.get("to") else { return Err("to is missing".to_owned()) };
+        let other = lenses.iter().find(|lens| lens.name == *to).ok_or_else(|| {
+            let hint = did_you_mean(to, lenses.iter().map(|lens| lens.name.as_str()));
+            format!("to: there is no lens \"{to}\"{hint}")
+        })?;
+        if way.contains(&other.name.as_str()) {
+            return Err(format!(
+                "to: the links of \"{to}\" lead back to it; one lens of them has to have a time of its own"
+            ));
+        }
+        way.push(&other.name);
+        all.extend(linked_on(&other.time, lenses, way)?);
+        way.pop();
+        if let Some(by) = step.parameters.get("by") {
+            let by = ("by".to_owned(), by.clone());
+            all.push(Handled { handler: "shift".to_owned(), parameters: [by].into() });
+        }
+    }
+    Ok(all)
+}
+
 /// Whether a step makes one moment of one, with nothing beside it that is there by halves.
 pub fn makes_one_moment(step: &Handled) -> bool {
     !matches!(step.handler.as_str(), AGGREGATE | GHOST)
@@ -292,7 +331,8 @@ impl Exact {
                 let at = text("at")?;
                 Self::Set(Interval::parse(&at)?.begin.ok_or_else(|| format!("\"{at}\" has no beginning"))?)
             }
-            "shift" => Self::Shift(span("by")?),
+            // Of a link its delay: the operators of the other lens stand before it ([`linked`]).
+            "shift" | LINK => Self::Shift(span("by")?),
             "ceil" => Self::Ceil(unit()?, span("by")?),
             "floor" => Self::Floor(unit()?, span("by")?),
             AGGREGATE => Self::Together(instants_of(step)?),
@@ -442,7 +482,7 @@ mod tests {
     #[test]
     fn all_operators_of_the_program_run_on_the_host() {
         let names: Vec<&str> = asked_for(AskedBy::Times).filter(|h| !h.is_users).map(|h| h.name.as_str()).collect();
-        assert_eq!(names, [SET, "shift", "ceil", "floor", "time-of-day", LOOP, AGGREGATE, "ghost"]);
+        assert_eq!(names, [SET, "shift", "ceil", "floor", "time-of-day", LOOP, AGGREGATE, GHOST, LINK]);
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::{
     geom::{Aabb, Volume},
     lens::{
         Lens, Operator,
-        epoch::{Ghosts, Instant, InstantOf, TIMELESS},
+        epoch::{Ghosts, Instant, InstantOf, TIMELESS, linked},
     },
     render::hiding::{Presence, rounded},
     scene::Scene,
@@ -50,7 +50,9 @@ impl Epochs {
     pub fn new(scene: &Scene) -> Result<Self, String> {
         let mut out = Self { own: vec![(scene.moment, 1.0)], ..Self::default() };
         let mut range = scene.moment.map(|moment| [moment; 2]);
-        for step in &scene.time_steps {
+        let steps =
+            linked(&scene.time_steps, &scene.lenses).map_err(|wrong| format!("[time] steps, \"link\": {wrong}"))?;
+        for step in &steps {
             let operator = Operator::new(step, scene.time_s)
                 .map_err(|message| format!("[time] steps, \"{}\": {message}", step.handler))?;
             range = operator.range(range);
@@ -59,7 +61,9 @@ impl Epochs {
         }
         for (lens, number) in scene.lenses.iter().zip(0..).filter(|(lens, _)| is_in_space(lens)) {
             let mut own = range;
-            for step in &lens.time {
+            let steps = linked(&lens.time, &scene.lenses)
+                .map_err(|wrong| format!("lens \"{}\": time, \"link\": {wrong}", lens.name))?;
+            for step in &steps {
                 let operator = Operator::new(step, scene.time_s)
                     .map_err(|message| format!("lens \"{}\": time, \"{}\": {message}", lens.name, step.handler))?;
                 own = operator.range(own);

@@ -88,6 +88,13 @@ impl MovingObjects {
         (Self { all: all.collect() }, still)
     }
 
+    /// The objects of the model that move, parts by themselves.
+    pub fn objects(&self) -> impl Iterator<Item = u32> {
+        let geometries =
+            self.all.iter().flat_map(|object| object.city.geometries.iter().map(|g| (&object.city.model, *g)));
+        geometries.map(|(model, g)| model.geometries[g as usize].object)
+    }
+
     /// Whether nothing moves.
     pub fn is_empty(&self) -> bool {
         self.all.is_empty()

@@ -304,6 +304,10 @@ impl Surroundings<'_> {
             let own = &mut boxes[geometry.object as usize];
             *own = own.union(geometry.bounds);
         }
+        // What moves may be anywhere.
+        for object in self.moving.objects() {
+            boxes[object as usize] = Aabb { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+        }
         boxes
     }
 

@@ -4,7 +4,7 @@ use crate::{
     lens::{
         BestView, Handled, Lens,
         best_view::{Depiction, LocalView},
-        epoch::{makes_one_moment, moment_after, set_to},
+        epoch::{linked, makes_one_moment, moment_after, set_to},
     },
     scene::model::Scene,
     time::Moment,
@@ -90,16 +90,17 @@ impl Command {
         };
         let is_elsewhen = !lens.time.is_empty();
         // Moments that are made of the scene's, one for one, need no steps of its own.
-        let then = moment_after(&lens.time, scene.moment, scene.time_s).ok();
-        let then = then.filter(|_| scene.time_steps.is_empty() && lens.time.iter().all(makes_one_moment));
+        let steps = linked(&lens.time, &scene.lenses).unwrap_or_default();
+        let then = moment_after(&steps, scene.moment, scene.time_s).ok();
+        let then = then.filter(|_| scene.time_steps.is_empty() && steps.iter().all(makes_one_moment));
         Some(Self::of(format!("step through {}", lens.name), scene, |s| {
             (s.camera, s.camera_above_ground) = (Some(to), above_ground);
             if is_elsewhen {
                 let back: Vec<Handled> = s.moment.map(set_to).into_iter().chain(s.time_steps.clone()).collect();
-                let steps = std::mem::replace(&mut s.lenses[index].time, back);
+                let own = std::mem::replace(&mut s.lenses[index].time, back);
                 match then {
                     Some(then) => s.moment = then,
-                    None => s.time_steps.extend(steps),
+                    None => s.time_steps.extend(own),
                 }
             }
             if let Some(shown) = s.lenses[index].kind.best_view_mut() {

@@ -9,7 +9,7 @@ use crate::{
     lens::{
         EffectUse, Handled, Lens,
         best_view::{Background, BaseStyle, StyleLook},
-        epoch::moment_after,
+        epoch::{linked, moment_after},
     },
     scene::{
         animation::Animation,
@@ -61,7 +61,8 @@ impl Scene {
     /// The moment that shows outside all lenses; of several that show together the first.
     pub fn shown_moment(&self) -> Option<Moment> {
         // Steps that do not fit are told where pictures are made.
-        moment_after(&self.time_steps, self.moment, self.time_s).unwrap_or(self.moment)
+        let steps = linked(&self.time_steps, &self.lenses).unwrap_or_default();
+        moment_after(&steps, self.moment, self.time_s).unwrap_or(self.moment)
     }
 }
 

@@ -135,3 +135,55 @@ fn keyframe(columns: &[Option<usize>], cells: &Cells) -> Result<Keyframe, String
 fn moment(text: &str) -> Result<Moment, String> {
     Interval::parse(text)?.begin.ok_or_else(|| format!("\"{text}\" has no beginning"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::city::test_city::{add_box, builder};
+
+    /// What is wrong with a table, or the model with it.
+    fn read(text: &str) -> Result<CityModel, String> {
+        static MADE: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
+        let number = MADE.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let file = std::env::temp_dir().join(format!("veduta-timetable-{}-{number}.csv", std::process::id()));
+        std::fs::write(&file, text).expect("a temporary file");
+        let mut builder = builder();
+        add_box(&mut builder, "a", [0; 3], [1000; 3]);
+        add_box(&mut builder, "b", [5000, 0, 0], [6000, 1000, 1000]);
+        let mut model = builder.finish();
+        let read = model.add_timetable(&file).map_err(|error| error.to_string());
+        std::fs::remove_file(&file).expect("the temporary file");
+        read.map(|()| model)
+    }
+
+    #[test]
+    fn rows_become_keyframes_in_the_order_of_time() {
+        let text = "yaw,t,id,x,y,z,note\n90,2025-06-01T08:00:10,b,1,2,3.5,x\n,2025-06-01T08:00,b,0,2,3,\n0,2025,c,0,0,0,\n0,2025,c,0,0,0,\n";
+        let model = read(text).expect("a timetable");
+        let [of] = &model.moves[..] else { panic!("one object: {:?}", model.moves) };
+        assert_eq!((of.object, of.keys.len()), (model.find_object("b").expect("it"), 2));
+        assert_eq!(of.keys[0].place, DVec3::new(0.0, 2.0, 3.0));
+        assert_eq!((of.keys[1].yaw, of.keys[1].scale), (90_f64.to_radians(), 1.0));
+        let facts = &model.timetables[0];
+        assert_eq!((facts.rows, facts.objects, facts.without_object), (4, 1, 2));
+        assert_eq!(facts.first_without_object, ["c"]);
+        assert_eq!(facts.first.as_deref(), Some("2025-06-01T08:00"), "the first moment of an object that is there");
+        assert_eq!(facts.last.as_deref(), Some("2025-06-01T08:00:10"));
+    }
+
+    #[test]
+    fn what_is_no_timetable_is_told() {
+        let wrong = |text: &str, expected: &str| {
+            let message = read(text).err().unwrap_or_default();
+            assert!(message.contains(expected), "{text:?} gave {message:?}, not {expected:?}");
+        };
+        wrong("", "is empty");
+        wrong("id,t,x,y\na,2025,1,2\n", "\"z\" is missing");
+        wrong("name,t,x,y,z\na,2025,1,2,3\n", "id");
+        wrong("id,t,x,y,z\na,2025,1,2,3\na,soon,1,2,3\n", "row 2 of a");
+        wrong("id,t,x,y,z\na,2025,1,,3\n", "y is missing");
+        wrong("id,t,x,y,z\na,2025,1,far,3\n", "y must be a number");
+        wrong("id,t,x,y,z\na,,1,2,3\n", "t is missing");
+        wrong("id,t,x,y,z,scale\na,2025,1,2,3,0\n", "scale must be more than 0, is 0");
+    }
+}

@@ -9,6 +9,7 @@ use crate::{
         BestView, Class, EffectUse, Lens, LensBody, LensKind, Parameter, Placement, Region,
         best_view::{LocalView, MapMode},
         chosen::Choice,
+        epoch::linked,
     },
     render::picture::{RenderError, Studio},
     scene::{Figure, PiecePlace, Poi, PoiPlace, Scene, Style, StyleLook},
@@ -172,7 +173,10 @@ fn show_moment(studio: &Studio, scene: &Scene, lens: &str, own: &mut Scene) -> R
     if steps.is_empty() {
         return Ok(());
     }
-    own.time_steps.extend(steps.iter().cloned());
+    // The view may have other lenses.
+    let of_lens = |message: String| RenderError::Scene(format!("lens \"{lens}\": time, \"link\": {message}"));
+    own.time_steps = linked(&own.time_steps, &scene.lenses).map_err(of_lens)?;
+    own.time_steps.extend(linked(steps, &scene.lenses).map_err(of_lens)?);
     if let Some(sun) = studio.sun_by_date(own)? {
         own.sun = sun;
     }

@@ -693,6 +693,7 @@ prop_compose! {
         scene.city.lod = lod.map(|tenths| crate::city::Lod { tenths }.to_string());
         scene.city.ground = ground;
         scene.city.joins = (0..scene.lenses.len() % 3).map(|i| Join { file: format!("t{i}.csv").into(), key: from.clone().unwrap_or_default(), attribute: undated.then(|| "id".into()) }).collect();
+        scene.city.timetables = (0..scene.lenses.len() % 2).map(|i| format!("day{i}.csv").into()).collect();
         scene.city.dating = Dating { until: from.clone().filter(|_| clay), from, undated: if undated { Undated::Hide } else if clay { Undated::Ghost } else { Undated::Show } };
         scene
     }

@@ -73,6 +73,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("loop"),
     built_in!("aggregate"),
     built_in!("ghost"),
+    built_in!("link"),
 ];
 
 /// How many handlers the 13 bits of an invoker can tell apart.

@@ -1,5 +1,6 @@
-//! Time (Tiesel chapter 4): the calendar against Python's, operators and loops; the sun against an almanac; what is there by halves.
+//! Time (Tiesel chapter 4): the calendar against Python's, operators and loops; the sun against an almanac; what is there by halves; what moves.
 
 mod chains;
+mod moving;
 mod partly;
 mod sun;
