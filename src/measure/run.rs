@@ -201,7 +201,9 @@ fn timed(studio: &mut Studio, shot: &Shot) -> Result<f64, RenderError> {
     let request = Request { aovs: Aovs::default(), statistics: false, ..shot.request };
     studio.renderer.settings.holds_geometry = false;
     let start = Instant::now();
-    studio.draw(&shot.scene, &request)?;
+    for scene in std::iter::once(&shot.scene).chain(&shot.also) {
+        studio.draw(scene, &request)?;
+    }
     studio.renderer.gpu.wait()?;
     Ok(start.elapsed().as_secs_f64() * 1e3)
 }

@@ -31,7 +31,7 @@ impl Stage<'_> {
     /// A picture of `scene` with so many samples per pixel; with lens masks where it has lenses.
     pub fn shot(&self, scene: Scene, samples: u32) -> Shot {
         let aovs = Aovs { lens_mask: !scene.lenses.is_empty(), ..Aovs::default() };
-        Shot { request: Request { samples, aovs, ..Request::plain(self.size) }, scene, before: None }
+        Shot { request: Request { samples, aovs, ..Request::plain(self.size) }, scene, before: None, also: Vec::new() }
     }
 
     /// Whether the shown place of each pixel of a picture of `scene`, which has no lenses, is in a focus area: by its definition,

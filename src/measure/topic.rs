@@ -88,6 +88,8 @@ pub struct Shot {
     pub request: Request,
     /// The scene of the frame before the timed one, where something moves.
     pub before: Option<Scene>,
+    /// The scenes of the other frames that it takes, which are timed with it.
+    pub also: Vec<Scene>,
 }
 
 /// What a picture should show, in f64.

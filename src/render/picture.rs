@@ -184,10 +184,17 @@ pub struct Studio {
     footprints: OwnFootprints,
     /// When its objects, and those of contents, are there.
     pub(super) lifetimes: Arc<KnownLifetimes>,
-    /// What is drawn of the city where its file has it.
+    /// What of the city never moves.
     still: Vec<u32>,
+    /// Whether that alone is drawn where its file has it: what moves is drawn beside it where a moment shows.
+    is_still: bool,
     /// What moves of it.
     moving: Arc<MovingObjects>,
+}
+
+/// The geometries that are drawn where the city's file has them: those that never move alone, or all.
+fn drawn_still<'a>(is_still: bool, still: &'a [u32], all: &'a [u32]) -> &'a [u32] {
+    if is_still { still } else { all }
 }
 
 impl Studio {
@@ -204,11 +211,11 @@ impl Studio {
         let geometries = shown_geometries(&model, cap);
         let ground = spec.ground.then(|| plain_ground(&model, &geometries)).flatten().map(Arc::new);
         let (moving, still) = MovingObjects::new(&model, &geometries);
-        let coplanar = coplanar_triangles(&model, &still);
+        let coplanar = coplanar_triangles(&model, &geometries);
         let mut renderer = Renderer::new(gpu)?;
         let shown = Shown {
             model: &model,
-            geometries: &still,
+            geometries: &geometries,
             coplanar: &coplanar,
             ground: ground.as_deref(),
             is_lit_as_before: false,
@@ -224,6 +231,7 @@ impl Studio {
             model,
             geometries,
             still,
+            is_still: false,
             moving: Arc::new(moving),
             ground,
             load: stats::Load::default(),
@@ -518,10 +526,17 @@ impl Studio {
 
     /// Puts the city on the GPU anew, with block models or without.
     fn set_city(&mut self, facades: bool, blocks: bool) -> Result<(), RenderError> {
-        let derived = || derive(&self.model, &self.still, &Derive { form: Form::Lod1, parts: true });
+        let derived = || {
+            derive(
+                &self.model,
+                drawn_still(self.is_still, &self.still, &self.geometries),
+                &Derive { form: Form::Lod1, parts: true },
+            )
+        };
         let blocks = blocks.then(derived);
-        let coplanar = coplanar_triangles(&self.model, &self.still);
-        let (model, geometries, ground) = (&self.model, &self.still, self.ground.as_deref());
+        let coplanar = coplanar_triangles(&self.model, drawn_still(self.is_still, &self.still, &self.geometries));
+        let (model, geometries, ground) =
+            (&self.model, drawn_still(self.is_still, &self.still, &self.geometries), self.ground.as_deref());
         let shown = Shown { model, geometries, coplanar: &coplanar, ground, is_lit_as_before: false, facades };
         self.renderer.set_city(&shown, blocks.as_ref().map(|blocks| &blocks.model))?;
         self.insets.clear();
@@ -532,7 +547,11 @@ impl Studio {
     /// wanted.
     fn find_cities(&mut self, resolved: &Resolved, facades: bool) -> Result<(), RenderError> {
         let edges = resolved.operations.draws_lines();
-        let stale = self.renderer.city().filter(|city| city.has_facades != facades).map(|city| city.has_blocks);
+        let is_still = resolved.operations.moves;
+        let is_other = self.is_still != is_still;
+        self.is_still = is_still;
+        let stale = self.renderer.city().filter(|city| is_other || city.has_facades != facades);
+        let stale = stale.map(|city| city.has_blocks);
         if let Some(has_blocks) = stale {
             self.set_city(facades, has_blocks)?;
         }
@@ -540,7 +559,8 @@ impl Studio {
         if self.renderer.has_edges() || !edges {
             return Ok(());
         }
-        let (model, geometries, ground) = (&self.model, &self.still, self.ground.as_deref());
+        let (model, geometries, ground) =
+            (&self.model, drawn_still(self.is_still, &self.still, &self.geometries), self.ground.as_deref());
         let shown = Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false, facades };
         Ok(self.renderer.set_edges(&shown)?)
     }

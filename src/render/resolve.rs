@@ -268,7 +268,10 @@ impl Surroundings<'_> {
         let places = places_of(&time.epochs, volumes, seen);
         time.met = self.met(&places, seen);
         let own = time.lifetimes.first().map(|own| &**own);
-        let moving = self.moving.at(self.model, &time.epochs, &places, own).map_err(ResolveError::Scene)?;
+        let moving = match time.moves {
+            true => self.moving.at(self.model, &time.epochs, &places, own).map_err(ResolveError::Scene)?,
+            false => Moving { bounds: Aabb::EMPTY, ..Moving::default() },
+        };
         time.moving.clone_from(&moving.moments);
         let beside = Beside { tables: &tables, time: &time, point_px: scene.figure.point_px() };
         let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &beside);
@@ -314,10 +317,10 @@ impl Surroundings<'_> {
     /// Which moments show, and when objects are there.
     fn time(&self, scene: &Scene, contents: &SceneContents) -> Result<SceneTime, ResolveError> {
         let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;
-        let moves = !self.moving.is_empty();
-        if !epochs.is_any() && !moves {
+        if !epochs.is_any() {
             return Ok(SceneTime::default());
         }
+        let moves = !self.moving.is_empty();
         let dating = &scene.city.dating;
         let own = self.lifetimes.of(self.model, dating).map_err(ResolveError::Scene)?;
         // Data sets that lenses show may have other attributes, or none.

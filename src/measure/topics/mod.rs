@@ -7,6 +7,7 @@ mod light;
 mod refinement;
 mod samples;
 mod sprites;
+mod time;
 mod transparency;
 
 use crate::measure::topic::Topic;
@@ -19,6 +20,7 @@ pub const TOPICS: &[Topic] = &[
     refinement::TOPIC,
     samples::TOPIC,
     sprites::TOPIC,
+    time::TOPIC,
     transparency::TOPIC,
 ];
 

@@ -1,6 +1,7 @@
-//! Time (Tiesel chapter 4): the calendar against Python's, operators and loops; the sun against an almanac; what is there by halves; what moves.
+//! Time (Tiesel chapter 4): the calendar against Python's, operators and loops; the sun against an almanac; what is there by halves; what moves; what it costs.
 
 mod chains;
+mod costs;
 mod moving;
 mod partly;
 mod sun;

@@ -213,6 +213,10 @@ fn what_moves_costs_a_draw_for_each_moment_at_which_it_shows() {
     };
     let disc = |x: f64, step: Step| Disc { middle: DVec2::new(x, 0.0), radius: 9.0, step };
     let own = drawn(&scene);
+    // Where no moment shows it is drawn with all else.
+    let timeless = Scene { moment: None, ..scene.clone() };
+    let whole = drawn(&timeless);
+    assert_eq!(whole, [1, own[1]]);
     // A lens that it does not touch at the moment that shows there.
     scene.lenses = vec![disc(70.0, Step::Shift(0.5)).lens(0)];
     assert_eq!(drawn(&scene), own);
