@@ -67,6 +67,7 @@ pub struct Gpu {
     pub strays: bool,
     allocations: AtomicU64,
     uploads: AtomicU64,
+    uploaded_bytes: AtomicU64,
     allocated_bytes: AtomicU64,
     /// What the driver complained about first while nobody was on guard.
     trouble: Arc<Mutex<Option<String>>>,
@@ -158,6 +159,7 @@ impl Gpu {
             strays: false,
             allocations: AtomicU64::new(0),
             uploads: AtomicU64::new(0),
+            uploaded_bytes: AtomicU64::new(0),
             allocated_bytes: AtomicU64::new(0),
             trouble,
         };
@@ -202,6 +204,16 @@ impl Gpu {
     /// Uploads (buffer and texture writes) so far.
     pub fn uploads(&self) -> u64 {
         self.uploads.load(Relaxed)
+    }
+
+    /// Bytes of these.
+    pub fn uploaded_bytes(&self) -> u64 {
+        self.uploaded_bytes.load(Relaxed)
+    }
+
+    fn count_upload(&self, bytes: u64) {
+        self.uploads.fetch_add(1, Relaxed);
+        self.uploaded_bytes.fetch_add(bytes, Relaxed);
     }
 
     /// Bytes ever allocated through this device.
@@ -265,7 +277,7 @@ impl Gpu {
             &padded
         };
         self.count_allocation(contents.len() as u64);
-        self.uploads.fetch_add(1, Relaxed);
+        self.count_upload(contents.len() as u64);
         Ok(self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage }))
     }
 
@@ -301,8 +313,9 @@ impl Gpu {
 
     /// Replaces a part of a buffer from a byte on, a multiple of 4.
     pub fn write_from<T: bytemuck::NoUninit>(&self, buffer: &wgpu::Buffer, first_byte: u64, data: &[T]) {
-        self.uploads.fetch_add(1, Relaxed);
-        self.queue.write_buffer(buffer, first_byte, bytemuck::cast_slice(data));
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        self.count_upload(bytes.len() as u64);
+        self.queue.write_buffer(buffer, first_byte, bytes);
     }
 
     /// A 2D texture (array), one sample per texel.
@@ -330,7 +343,7 @@ impl Gpu {
 
     /// Fills one mip level of a texture's first layer; `texels` are tightly packed.
     pub fn write_texture_level(&self, texture: &wgpu::Texture, level: u32, texels: &[u8]) {
-        self.uploads.fetch_add(1, Relaxed);
+        self.count_upload(texels.len() as u64);
         let size = texture.size().mip_level_size(level, wgpu::TextureDimension::D2);
         let texel = texture.format().block_copy_size(None).unwrap_or(4);
         self.queue.write_texture(

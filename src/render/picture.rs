@@ -145,8 +145,8 @@ pub struct Picture {
     pub overlays: Vec<ShownOverlay>,
     /// Characters of the furniture that no font has.
     pub without_glyph: BTreeSet<char>,
-    /// GPU allocations and uploads while drawing (reading back not counted).
-    made: (u64, u64),
+    /// GPU allocations and uploads while drawing, and the bytes of these (reading back not counted).
+    made: [u64; 3],
     /// What it cost.
     pub statistics: Statistics,
 }
@@ -428,7 +428,7 @@ impl Studio {
             picture.statistics = self.statistics(scene, &drawn, request, &resolved, &picture, passes);
             let frame = &mut picture.statistics.frame;
             frame.cpu_ms = started.elapsed().as_secs_f64() * 1e3;
-            (frame.allocations, frame.uploads) = picture.made;
+            [frame.allocations, frame.uploads, frame.uploaded_bytes] = picture.made;
             let seen = visible_share::of_lenses(self, scene, request.size)?;
             picture.statistics.lenses.iter_mut().zip(seen).for_each(|(lens, seen)| lens.seen = seen);
         }
@@ -695,7 +695,8 @@ impl Studio {
             input.sample = sample;
             let mut timer =
                 if request.statistics && sample == 0 { Some(Timer::new(&self.renderer.gpu)?) } else { None };
-            let before = (self.renderer.gpu.allocations(), self.renderer.gpu.uploads());
+            let made = |gpu: &Gpu| [gpu.allocations(), gpu.uploads(), gpu.uploaded_bytes()];
+            let before = made(&self.renderer.gpu);
             let mut records = self.renderer.draw(&input, timer.as_mut())?;
             // Later samples are added to those before; they meet about as many crossings.
             if sample == 0 && (self.renderer.makes_room()? | self.renderer.sorts_longer()?) {
@@ -707,8 +708,8 @@ impl Studio {
             picture.layers.bands += layers.bands;
             picture.layers.excess += layers.excess;
             picture.method.add(&self.renderer.method_figures());
-            picture.made.0 += self.renderer.gpu.allocations() - before.0;
-            picture.made.1 += self.renderer.gpu.uploads() - before.1;
+            let after = made(&self.renderer.gpu);
+            picture.made.iter_mut().zip(after).zip(before).for_each(|((all, after), before)| *all += after - before);
             if sample == 0 {
                 band.read_aovs(&self.renderer, &input.view, part)?;
                 if records.iter().any(|r| r.name == CLEAR_MASKS) {

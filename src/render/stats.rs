@@ -92,6 +92,8 @@ pub struct Frame {
     pub allocations: u64,
     /// GPU uploads while drawing.
     pub uploads: u64,
+    /// Bytes of these.
+    pub uploaded_bytes: u64,
     /// What deformation lenses move; `null` where none does.
     pub deformed: Option<Deformed>,
     /// Translucent layers of all samples; `null` where nothing is seen through.

@@ -1,5 +1,7 @@
 //! Buffers that follow a scene: written only when their content changes, or by the GPU alone.
 
+use std::ops::Range;
+
 use crate::gpu::{Gpu, GpuError};
 
 /// What the smallest has: room for any stage that is bound at an offset.
@@ -36,13 +38,41 @@ impl Synced {
         if grown {
             self.buffer = gpu.empty_buffer(self.label, self.usage, (bytes.len() as u64).next_power_of_two())?;
         }
-        if !bytes.is_empty() {
-            gpu.write(&self.buffer, bytes);
+        match changed(&self.bytes, bytes).filter(|_| !grown) {
+            // What changes of a buffer is mostly little of it.
+            Some(runs) => runs.into_iter().for_each(|run| gpu.write_from(&self.buffer, run.start as u64, &bytes[run])),
+            None if bytes.is_empty() => {}
+            None => gpu.write(&self.buffer, bytes),
         }
         self.bytes.clear();
         self.bytes.extend_from_slice(bytes);
         Ok(grown)
     }
+}
+
+/// Runs that are written by themselves, at most.
+const MOST_RUNS: usize = 64;
+
+/// Where two contents of one length differ, in runs of whole words; `None`: that is too much, or they have not one length.
+fn changed(before: &[u8], after: &[u8]) -> Option<Vec<Range<usize>>> {
+    const WORD: usize = 4;
+    if before.len() != after.len() || !after.len().is_multiple_of(WORD) {
+        return None;
+    }
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (i, (a, b)) in before.chunks_exact(WORD).zip(after.chunks_exact(WORD)).enumerate() {
+        if a == b {
+            continue;
+        }
+        let word = i * WORD..(i + 1) * WORD;
+        let is_full = runs.len() == MOST_RUNS;
+        match runs.last_mut().filter(|last| last.end == word.start) {
+            Some(last) => last.end = word.end,
+            None if is_full => return None,
+            None => runs.push(word),
+        }
+    }
+    Some(runs)
 }
 
 /// A buffer that the GPU fills.
@@ -85,5 +115,27 @@ impl Room {
             other => other,
         })?;
         Ok(true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_changes_is_told_in_words() {
+        let before: Vec<u8> = (0..32).collect();
+        let with = |places: &[usize]| {
+            let mut after = before.clone();
+            places.iter().for_each(|&at| after[at] = 99);
+            changed(&before, &after)
+        };
+        assert_eq!(with(&[]), Some(vec![]));
+        assert_eq!(with(&[5]), Some(vec![4..8]));
+        assert_eq!(with(&[3, 4, 11, 31]), Some(vec![0..12, 28..32]));
+        assert_eq!(changed(&before, &before[4..]), None, "of another length");
+        let (zeros, every_other) = (vec![0; 8 * (MOST_RUNS + 1)], [1, 0, 0, 0, 0, 0, 0, 0].repeat(MOST_RUNS + 1));
+        assert_eq!(changed(&zeros, &every_other), None, "too many");
+        assert_eq!(changed(&zeros[8..], &every_other[8..]).map(|runs| runs.len()), Some(MOST_RUNS));
     }
 }

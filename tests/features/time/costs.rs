@@ -72,3 +72,45 @@ fn a_history_that_nobody_asks_for_costs_nothing() {
     // And when nobody asks any more, all is as before.
     assert_eq!(counts(&mut studio, &with), expected);
 }
+
+#[test]
+fn scrubbing_uploads_a_moment_and_compiles_nothing() {
+    let folder = Folder::new("scrub");
+    let mut scene = town(&folder, true);
+    scene.city.timetables.clear();
+    scene.moment = Moment::of_year(1900);
+    let mut studio = of_scene(&scene);
+    let at = |year: i64| {
+        let at = Parameter::Text(Moment::of_year(year).expect("a year").written());
+        vec![Handled { handler: "set".to_owned(), parameters: [("at".to_owned(), at)].into() }]
+    };
+    let mut drawn = |scene: &Scene| {
+        let request = Request { statistics: true, ..Request::plain(SIZE) };
+        let found = studio.render(scene, &request).expect("a picture").statistics;
+        (found.frame.uploaded_bytes, found.frame.allocations, found.pipelines.compiled)
+    };
+    let lens_at = |i: usize| {
+        let center = DVec3::new(25.0 * i as f64 - 60.0, 5.0, 0.0);
+        lens(&format!("t{i}"), [veduta::geom::Shape::Sphere { center, radius: 30.0 }], "sepia")
+    };
+    scene.lenses = (0..4).map(lens_at).collect();
+    for (lens, year) in scene.lenses.iter_mut().zip([1500, 1600, 1700, 1800]) {
+        lens.time = at(year);
+    }
+    drawn(&scene);
+    assert_eq!(drawn(&scene), (0, 0, 0), "the same again");
+    // One lens, which shows neither the first nor the last of all moments, then all of them and the scene.
+    scene.lenses[2].time = at(1711);
+    let (bytes, allocations, compiled) = drawn(&scene);
+    assert!(bytes > 0 && bytes <= 8 && allocations == 0 && compiled == 0, "{bytes} bytes, {allocations}, {compiled}");
+    for (lens, year) in scene.lenses.iter_mut().zip([1510, 1620, 1730, 1840]) {
+        lens.time = at(year);
+    }
+    scene.moment = Moment::of_year(1950);
+    let (bytes, allocations, compiled) = drawn(&scene);
+    // Four lenses, the scene, and the ends of what shows anywhere.
+    assert!(
+        bytes > 0 && bytes <= 16 * 4 && allocations == 0 && compiled == 0,
+        "{bytes} bytes, {allocations}, {compiled}"
+    );
+}
