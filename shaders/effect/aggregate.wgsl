@@ -14,7 +14,15 @@
 //! type = "weights"
 //! without = "all the same"
 //! doc = "How much each of them counts, one number for each of `at`; what counts is what share of all of them it is."
+//!
+//! [[parameter]]
+//! name = "show"
+//! type = "word"
+//! words = ["share", "any"]
+//! default = "share"
+//! doc = "What is there in some of them alone: as opaque as their weights say (`share`), or whole (`any`)."
 
 fn effect(moment: Moment, p: Parameters) -> Moment {
+    shows_any = shows_any || p.show == SHOW_ANY;
     return instant_of(p.at, moment);
 }

@@ -6,6 +6,7 @@ const WEIGHTS: u32 = 9u;
 const SCENE_INSTANTS: u32 = 10u;
 const SCENE_PAST: u32 = 13u;
 const SCENE_FUTURE: u32 = 16u;
+const SCENE_SHOWS_ANY: u32 = 20u;
 
 // Of what has no date, where that is a ghost.
 const UNDATED_OPACITY: f32 = 0.35;
@@ -27,6 +28,9 @@ var<private> combination: u32 = 0u;
 var<private> ghost_past: Duration;
 var<private> ghost_future: Duration;
 
+// Whether what is there in some combination is there whole.
+var<private> shows_any: bool;
+
 fn duration_in(first: u32) -> Duration {
     return Duration(bitcast<i32>(object_values[first]), bitcast<i32>(object_values[first + 1u]), object_values[first + 2u]);
 }
@@ -45,6 +49,7 @@ fn instant_of(instants: Instants, below: Moment) -> Moment {
 
 // The moment of the scene in a combination, with the ghosts of the scene.
 fn scene_instant() -> Moment {
+    shows_any = object_values[SCENE_SHOWS_ANY] != 0u;
     ghost_past = duration_in(SCENE_PAST);
     ghost_future = duration_in(SCENE_FUTURE);
     let own = Instants(object_values[SCENE_INSTANTS], object_values[SCENE_INSTANTS + 1u], object_values[SCENE_INSTANTS + 2u]);

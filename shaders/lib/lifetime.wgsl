@@ -1,6 +1,6 @@
 // When objects are there, in what effects read of objects: the moment of the scene, where lifetimes begin, the first and the last moment
 // that any lens shows; how many combinations of instants there are, where their weights begin, the scene's instants and its ghosts; where the
-// moments of what moves begin; then what time operators read; then the lifetimes, that of no object first.
+// moments of what moves begin; whether what is there at some of the scene's instants is there whole; then what time operators read; then the lifetimes, that of no object first.
 
 const LIFETIMES: u32 = 2u;
 const LIFETIME_WORDS: u32 = 3u;     // of an object: its first moment and its last, a bit for each lens that may hold some of it, and all of it

@@ -219,6 +219,7 @@ impl Window {
             up: self.spec.up,
             materials: self.spec.materials,
             joins: self.spec.joins.clone(),
+            changes: (self.spec.changes.clone(), self.spec.dating.clone()),
             timetables: self.spec.timetables.clone(),
             ..LoadOptions::default()
         };

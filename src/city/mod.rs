@@ -2,6 +2,7 @@
 
 pub mod build;
 pub mod builtin;
+pub mod change;
 pub mod cityjson;
 pub mod closed;
 pub mod compare;

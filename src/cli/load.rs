@@ -50,6 +50,7 @@ pub fn load_city(spec: &CitySpec, frames: Frames, global: &GlobalArguments) -> O
         up: spec.up,
         materials: spec.materials,
         joins: spec.joins.clone(),
+        changes: (spec.changes.clone(), spec.dating.clone()),
         timetables: spec.timetables.clone(),
         frames,
         ..LoadOptions::default()

@@ -354,6 +354,19 @@ impl Gpu {
         );
     }
 
+    /// Replaces whole rows of a 2D texture's first layer and level, from one on.
+    pub fn write_texture_rows(&self, texture: &wgpu::Texture, first_row: u32, texels: &[u8]) {
+        self.count_upload(texels.len() as u64);
+        let row = texture.width() * texture.format().block_copy_size(None).unwrap_or(4);
+        let origin = wgpu::Origin3d { y: first_row, ..wgpu::Origin3d::ZERO };
+        self.queue.write_texture(
+            wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() },
+            texels,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None },
+            wgpu::Extent3d { width: texture.width(), height: texels.len() as u32 / row, depth_or_array_layers: 1 },
+        );
+    }
+
     /// Waits until everything submitted is done.
     pub fn wait(&self) -> Result<(), GpuError> {
         match self.device.poll(wgpu::PollType::wait_indefinitely()) {

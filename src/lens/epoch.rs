@@ -34,7 +34,8 @@ enum Exact {
     Ceil(Unit, Span),
     Floor(Unit, Span),
     TimeOfDay(i64),
-    Together(Vec<Instant>),
+    /// And whether what is there at some of them is there whole.
+    Together(Vec<Instant>, bool),
     Ghost(Ghosts),
     Own(Arc<HostProgram>),
 }
@@ -124,7 +125,7 @@ impl Operator {
     /// The moments that it makes of another, each with how much it counts: together 1.
     pub fn moments(&self, at: Option<Moment>) -> Vec<(Option<Moment>, f64)> {
         match &self.exact {
-            Exact::Together(instants) => instants.iter().map(|own| (own.moment(at), own.weight)).collect(),
+            Exact::Together(instants, _) => instants.iter().map(|own| (own.moment(at), own.weight)).collect(),
             _ => vec![(self.apply(at), 1.0)],
         }
     }
@@ -132,9 +133,14 @@ impl Operator {
     /// The moments of a set; of those that make one moment, none.
     pub fn instants(&self) -> &[Instant] {
         match &self.exact {
-            Exact::Together(instants) => instants,
+            Exact::Together(instants, _) => instants,
             _ => &[],
         }
+    }
+
+    /// Whether what is there at some of its moments is there whole.
+    pub fn shows_any(&self) -> bool {
+        matches!(self.exact, Exact::Together(_, true))
     }
 
     /// What shows by halves beside the moment, where it says that.
@@ -154,7 +160,7 @@ impl Operator {
             Exact::Ceil(unit, by) => at.map(|at| at.shifted(*by).ceiled(*unit)),
             Exact::Floor(unit, by) => at.map(|at| at.shifted(*by).floored(*unit)),
             Exact::TimeOfDay(micros) => at.map(|at| at.at_time_of_day(*micros)),
-            Exact::Together(instants) => instants.first().and_then(|first| first.moment(at)),
+            Exact::Together(instants, _) => instants.first().and_then(|first| first.moment(at)),
             Exact::Ghost(_) => at,
         }
     }
@@ -163,7 +169,7 @@ impl Operator {
     pub fn range(&self, of: Option<[Moment; 2]>) -> Option<[Moment; 2]> {
         match &self.exact {
             Exact::Set(moment) => Some([*moment; 2]),
-            Exact::Together(instants) => {
+            Exact::Together(instants, _) => {
                 let ends = of.map_or([None; 2], |of| of.map(Some));
                 let all = ends.into_iter().flat_map(|below| instants.iter().filter_map(move |own| own.moment(below)));
                 let all: Vec<Moment> = all.collect();
@@ -335,7 +341,10 @@ impl Exact {
             "shift" | LINK => Self::Shift(span("by")?),
             "ceil" => Self::Ceil(unit()?, span("by")?),
             "floor" => Self::Floor(unit()?, span("by")?),
-            AGGREGATE => Self::Together(instants_of(step)?),
+            AGGREGATE => {
+                let shows_any = step.parameters.get("show") == Some(&Parameter::Text("any".to_owned()));
+                Self::Together(instants_of(step)?, shows_any)
+            }
             GHOST => Self::Ghost(Ghosts { past: length("past")?, future: length("future")? }),
             "time-of-day" => Self::TimeOfDay(Span::of_clock(&text("time")?)?.micros()),
             other => return Err(format!("\"{other}\" does not run on the host")),

@@ -208,7 +208,15 @@ impl Contents {
         if parts == self.parts && self.surfaces.is_some() != wanted.is_empty() {
             return Ok(false);
         }
-        let mut table = if wanted.is_empty() { Vec::new() } else { own.buffers.surface_table.clone() };
+        // What is of the scene's own city stays.
+        let own_count = own.buffers.surface_table.len();
+        let mut table = std::mem::take(&mut self.table);
+        let keeps_own = self.surfaces.is_some() && !wanted.is_empty() && table.len() >= own_count;
+        match keeps_own {
+            true => table.truncate(own_count),
+            false if wanted.is_empty() => table.clear(),
+            false => table.clone_from(&own.buffers.surface_table),
+        }
         for part in &parts {
             let turned = |normal: u32| {
                 let is_turned = part.2 != DQuat::IDENTITY;
@@ -226,9 +234,13 @@ impl Contents {
             let city = self.city(own, part.0);
             table.extend(city.into_iter().flat_map(|city| &city.buffers.surface_table).map(entry));
         }
-        self.surfaces = if wanted.is_empty() { None } else { Some(surfaces::upload(gpu, &table)?) };
+        let there = self.surfaces.as_ref().filter(|_| keeps_own);
+        let is_written = there.is_some_and(|there| surfaces::replace_from(gpu, there, own_count, &table));
+        if !is_written {
+            self.surfaces = if wanted.is_empty() { None } else { Some(surfaces::upload(gpu, &table)?) };
+        }
         (self.table, self.parts) = (table, parts);
-        Ok(true)
+        Ok(!is_written)
     }
 
     /// Where the contents stand.

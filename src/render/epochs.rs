@@ -27,6 +27,8 @@ pub struct Epochs {
     pub own: Vec<(Option<Moment>, f64)>,
     /// What shows by halves beside them.
     ghosts: Ghosts,
+    /// Whether what is there at some of them is there whole.
+    shows_any: bool,
     /// What lenses do to them, by lens, ascending; of a lens in order.
     pub operators: Vec<(u32, Operator)>,
     /// The first and the last moment that shows anywhere; `None`: none does.
@@ -35,7 +37,7 @@ pub struct Epochs {
 
 impl Default for Epochs {
     fn default() -> Self {
-        Self { own: vec![(None, 1.0)], ghosts: Ghosts::NONE, operators: Vec::new(), range: None }
+        Self { own: vec![(None, 1.0)], ghosts: Ghosts::NONE, shows_any: false, operators: Vec::new(), range: None }
     }
 }
 
@@ -58,6 +60,7 @@ impl Epochs {
             range = operator.range(range);
             out.own = together(&out.own, std::slice::from_ref(&operator));
             out.ghosts = operator.ghosts().unwrap_or(out.ghosts);
+            out.shows_any |= operator.shows_any();
         }
         for (lens, number) in scene.lenses.iter().zip(0..).filter(|(lens, _)| is_in_space(lens)) {
             let mut own = range;
@@ -217,7 +220,8 @@ impl Epochs {
         words.extend([self.combinations() as u32, 0]);
         words.extend([0, self.own.len() as u32, 1]);
         words.extend([self.ghosts.past, self.ghosts.future].iter().flat_map(|span| span.words()));
-        words.push(words.len() as u32 + 1);
+        words.push(words.len() as u32 + 2);
+        words.push(u32::from(self.shows_any));
         words.extend(moving.iter().flat_map(|moment| of(*moment)));
         let mut begins = Vec::new();
         for (_, operator) in &self.operators {

@@ -157,6 +157,20 @@ pub fn upload(gpu: &Gpu, entries: &[layout::Surface]) -> Result<wgpu::TextureVie
     Ok(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
 
+/// Puts the entries from one on into a table that has as many rows as they need in all; whether it has.
+pub fn replace_from(gpu: &Gpu, table: &wgpu::TextureView, first: usize, entries: &[layout::Surface]) -> bool {
+    let texture = table.texture();
+    let rows = (entries.len() as u32).div_ceil(ROW).max(1);
+    if texture.height() != rows {
+        return false;
+    }
+    let first_row = first as u32 / ROW;
+    let mut texels = bytemuck::cast_slice::<_, u8>(&entries[(first_row * ROW) as usize..]).to_vec();
+    texels.resize(((rows - first_row) * ROW) as usize * size_of::<layout::Surface>(), 0);
+    gpu.write_texture_rows(texture, first_row, &texels);
+    true
+}
+
 /// What the table says of the plain ground in a colour, that faces a packed normal: lit as level ground, on slopes too.
 fn plain_ground(color: [f32; 3], normal: u32) -> layout::Surface {
     let flags = layout::PART_TERRAIN << layout::SURFACE_PART_SHIFT | layout::SURFACE_LIT_AS_BEFORE;

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    city::{Materials, lifetime::Dating, load::Up, side_table::Join},
+    city::{Materials, change::CityChange, lifetime::Dating, load::Up, side_table::Join},
     lens::{
         EffectUse, Handled, Lens,
         best_view::{Background, BaseStyle, StyleLook},
@@ -83,6 +83,8 @@ pub struct CitySpec {
     pub dating: Dating,
     /// Side tables whose attributes its objects get.
     pub joins: Vec<Join>,
+    /// Attributes that say what became of its objects.
+    pub changes: Vec<CityChange>,
     /// Timetables by which its objects move.
     pub timetables: Vec<PathBuf>,
 }
@@ -104,6 +106,7 @@ impl Default for CitySpec {
             ground: true,
             dating: Dating::default(),
             joins: Vec::new(),
+            changes: Vec::new(),
             timetables: Vec::new(),
         }
     }

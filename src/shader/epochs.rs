@@ -170,6 +170,7 @@ fn exists(asked: &Asked, partly: bool, moves: bool) -> String {
     }}
     var sum = 0.0;
     var is_whole = true;
+    var most = 0.0;
     let count = combinations();
     for (var i = 0u; i < count; i++) {{
         combination = i;
@@ -178,6 +179,10 @@ fn exists(asked: &Asked, partly: bool, moves: bool) -> String {
         let share = select(0.0, there, {is_its}true);
         sum += share * weight_of_combination();
         is_whole = is_whole && share == 1.0;
+        most = max(most, share);
+    }}
+    if shows_any {{
+        return most;
     }}
     return select(min(sum, 1.0), 1.0, is_whole);
 }}

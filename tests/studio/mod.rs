@@ -78,9 +78,16 @@ fn over(model: CityModel, spec: &CitySpec) -> Studio {
 
 /// A studio over a scene's city.
 pub fn of_scene(scene: &Scene) -> Studio {
+    let changes = (scene.city.changes.clone(), scene.city.dating.clone());
     let (joins, timetables) = (scene.city.joins.clone(), scene.city.timetables.clone());
-    let options =
-        LoadOptions { up: scene.city.up, materials: scene.city.materials, joins, timetables, ..LoadOptions::default() };
+    let options = LoadOptions {
+        up: scene.city.up,
+        materials: scene.city.materials,
+        joins,
+        timetables,
+        changes,
+        ..LoadOptions::default()
+    };
     let model = load(&scene.city.files, &options, &Quiet).expect("the files load");
     over(model, &scene.city)
 }

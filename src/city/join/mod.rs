@@ -105,7 +105,7 @@ impl CityModel {
     }
 
     /// Puts attributes among those that objects have.
-    fn add_attributes(&mut self, added: &FxHashMap<u32, Vec<Attribute>>) {
+    pub fn add_attributes(&mut self, added: &FxHashMap<u32, Vec<Attribute>>) {
         if added.is_empty() {
             return;
         }

@@ -23,6 +23,7 @@ pub use progress::{Progress, Quiet, Stage};
 use crate::{
     city::{
         build::ModelBuilder,
+        change::{Between, CityChange},
         join::{join_all, read_timetables},
         load::sniff::Format,
         model::CityModel,
@@ -65,9 +66,31 @@ pub fn load_with_stats(
     texture::settle(&mut model);
     join_all(&mut model, &options.joins)?;
     read_timetables(&mut model, &options.timetables)?;
+    add_changes(&mut model, options, progress)?;
     tell_degrees(&mut model, paths);
     stats.build = start.elapsed();
     Ok((model, stats))
+}
+
+/// Adds the attributes that say what became of objects.
+fn add_changes(model: &mut CityModel, options: &LoadOptions, progress: &dyn Progress) -> Result<(), LoadError> {
+    let (changes, dating) = &options.changes;
+    for CityChange { attribute, between } in changes {
+        match between {
+            Between::Moments(moments) => model.add_change(attribute, *moments, dating).map_err(|message| {
+                let file = model.sources.first().map_or(PathBuf::new(), |source| source.path.clone());
+                LoadError::new(&file, message)
+            })?,
+            Between::Files { files, key } => {
+                let own = LoadOptions { changes: Default::default(), frames: model.frames.clone(), ..options.clone() };
+                let before = load(files, &own, progress)?;
+                let file = files.first().cloned().unwrap_or_default();
+                let gone = model.add_change_since(&file, attribute, &before, key.as_deref())?;
+                log::info!("{}: {gone} objects of it are gone", file.display());
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Warns of a city that is a needle: degrees east and north, metres up, and no reference system that says so.

@@ -9,7 +9,7 @@ use std::{
 
 use glam::DVec3;
 
-use crate::city::{crs::Frames, model::Materials, side_table::Join};
+use crate::city::{change::CityChange, crs::Frames, lifetime::Dating, model::Materials, side_table::Join};
 
 /// Names of the files of a folder by their lower-case spelling; of several the first by name.
 type Listing = Arc<HashMap<String, OsString>>;
@@ -63,6 +63,8 @@ pub struct LoadOptions {
     pub materials: Materials,
     /// Side tables whose attributes its objects get.
     pub joins: Vec<Join>,
+    /// Attributes that say what became of its objects, and which attributes say when these are there.
+    pub changes: (Vec<CityChange>, Dating),
     /// Timetables by which its objects move.
     pub timetables: Vec<PathBuf>,
     /// The metric frames of another city that this one is to be put in, too; one that is open is chosen by the files.

@@ -225,6 +225,7 @@ pub fn open(
         up: scene.city.up,
         materials: scene.city.materials,
         joins: scene.city.joins.clone(),
+        changes: (scene.city.changes.clone(), scene.city.dating.clone()),
         timetables: scene.city.timetables.clone(),
         ..LoadOptions::default()
     };

@@ -1,9 +1,14 @@
 //! `[city]` and `[sun]` in scene files.
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 
 use crate::{
-    city::side_table::Join,
+    city::{
+        change::{Between, CityChange},
+        side_table::Join,
+    },
     figure::scene_file::{
         check::lod,
         epoch::moment,
@@ -13,6 +18,7 @@ use crate::{
         row::{self, Row, field, keys_of},
     },
     scene::{CitySpec, Sun, SunTime},
+    time::Moment,
 };
 
 /// `[city]`.
@@ -142,6 +148,38 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
     ),
     Row::<CitySpec>::new(
         key(
+            "change",
+            Kind::Tables(&CHANGE),
+            "none",
+            "",
+            "Attributes that say what became of its objects from one state to another; see Change.",
+            "[{ since = \"1900\", until = \"2000\" }]",
+        ),
+        |city, options| {
+            let of = |change| row::written(CHANGE_ROWS, change, &ChangeKeys::default(), options);
+            let all: Vec<ChangeKeys> = city.changes.iter().map(ChangeKeys::of).collect();
+            (!all.is_empty()).then(|| Data::list(all.iter().map(of)))
+        },
+        |city, given| {
+            let nodes = given.node.list().unwrap_or_default();
+            let of = |(i, node): (usize, &Node)| {
+                let place = given.fields.place.within(&format!("change.{i}"), node.line);
+                let fields = given.reader.checker.fields(node, &CHANGE, &[], place);
+                let mut keys = ChangeKeys::default();
+                let is_read = row::read(CHANGE_ROWS, &fields, given.reader, &mut keys);
+                let change = keys.change();
+                if change.is_none() {
+                    let message =
+                        "says no states: since and until, two times, or files, an earlier state, would be right";
+                    given.reader.checker.note(&fields.place, "", node.line, message);
+                }
+                change.filter(|_| is_read)
+            };
+            city.changes = nodes.iter().enumerate().filter_map(of).collect();
+        },
+    ),
+    Row::<CitySpec>::new(
+        key(
             "timetables",
             Kind::Texts,
             "none",
@@ -157,6 +195,107 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
             let must_exist = given.reader.options().must_exist;
             city.timetables = given.reader.files(given.fields, given.key, must_exist);
         },
+    ),
+];
+
+/// The keys of an element of `change`, each for itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct ChangeKeys {
+    attribute: Option<String>,
+    since: Option<Moment>,
+    until: Option<Moment>,
+    files: Vec<PathBuf>,
+    key: Option<String>,
+}
+
+/// The attribute where none is named.
+const CHANGE_ATTRIBUTE: &str = "change";
+
+impl ChangeKeys {
+    fn of(change: &CityChange) -> Self {
+        let attribute = Some(change.attribute.clone()).filter(|name| name != CHANGE_ATTRIBUTE);
+        match &change.between {
+            Between::Moments([since, until]) => {
+                Self { attribute, since: Some(*since), until: Some(*until), ..Self::default() }
+            }
+            Between::Files { files, key } => {
+                Self { attribute, files: files.clone(), key: key.clone(), ..Self::default() }
+            }
+        }
+    }
+
+    /// What they mean; `None`: no two states, or more.
+    fn change(self) -> Option<CityChange> {
+        let between = match (self.since.zip(self.until), self.files.is_empty()) {
+            (Some((since, until)), true) if self.key.is_none() => Between::Moments([since, until]),
+            (None, false) if self.since.is_none() && self.until.is_none() => {
+                Between::Files { files: self.files, key: self.key }
+            }
+            _ => return None,
+        };
+        Some(CityChange { attribute: self.attribute.unwrap_or_else(|| CHANGE_ATTRIBUTE.to_owned()), between })
+    }
+}
+
+/// An element of `change` of `[city]`.
+pub const CHANGE: Table = Table {
+    name: "change",
+    doc: "An attribute that says of each object what became of it, from one time to another (`since`, `until`) or since an earlier state in other files.",
+    keys: keys_of!(CHANGE_ROWS),
+};
+
+const CHANGE_ROWS: &[Row<ChangeKeys>] = &[
+    field!(
+        key("attribute", Kind::Text, "\"change\"", "", "The name of the attribute.", "\"since 1900\""),
+        Same,
+        |change: ChangeKeys| change.attribute
+    ),
+    field!(
+        key(
+            "since",
+            Kind::Moment,
+            "none",
+            "",
+            "The earlier time; with `until`. The attribute says `added`, `removed`, `kept` or `at neither`.",
+            "\"1900\"",
+        ),
+        Same,
+        |change: ChangeKeys| change.since
+    ),
+    field!(
+        key("until", Kind::Moment, "none", "", "The later time; with `since`.", "\"2000\""),
+        Same,
+        |change: ChangeKeys| change.until
+    ),
+    Row::<ChangeKeys>::new(
+        key(
+            "files",
+            Kind::Texts,
+            "none",
+            "",
+            "City files of an earlier state, in place of `since` and `until`. The attribute says `added`, `kept`, `other shape`, `other attributes` or `other shape and attributes`.",
+            "[\"2015.city.json\"]",
+        ),
+        |change, options| {
+            let files = change.files.iter().map(|file| Data::Text(options.written(file)));
+            (!change.files.is_empty()).then(|| Data::list(files))
+        },
+        |change, given| {
+            let must_exist = given.reader.options().must_exist;
+            change.files = given.reader.files(given.fields, given.key, must_exist);
+        },
+    ),
+    field!(
+        key(
+            "key",
+            Kind::Text,
+            "the id",
+            "",
+            "With `files`: the attribute by which objects of both states are the same.",
+            "\"identificatie\"",
+        ),
+        Same,
+        |change: ChangeKeys| change.key
     ),
 ];
 

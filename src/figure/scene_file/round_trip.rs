@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use super::{tests::read_text, *};
 use crate::{
     city::{
+        change::{Between, CityChange},
         derived::{Derive, Form, Height},
         lifetime::{Dating, Undated},
         side_table::Join,
@@ -693,6 +694,10 @@ prop_compose! {
         scene.city.lod = lod.map(|tenths| crate::city::Lod { tenths }.to_string());
         scene.city.ground = ground;
         scene.city.joins = (0..scene.lenses.len() % 3).map(|i| Join { file: format!("t{i}.csv").into(), key: from.clone().unwrap_or_default(), attribute: undated.then(|| "id".into()) }).collect();
+        scene.city.changes = moment.and_then(Moment::from_micros).into_iter().map(|at| CityChange {
+            attribute: if undated { "change".into() } else { "since".into() },
+            between: if clay { Between::Moments([at, at]) } else { Between::Files { files: vec!["old.city.json".into()], key: from.clone() } },
+        }).collect();
         scene.city.timetables = (0..scene.lenses.len() % 2).map(|i| format!("day{i}.csv").into()).collect();
         scene.city.dating = Dating { until: from.clone().filter(|_| clay), from, undated: if undated { Undated::Hide } else if clay { Undated::Ghost } else { Undated::Show } };
         scene

@@ -246,6 +246,37 @@ fn layers_are_those_of_all_combinations_in_whole_years() {
     assert!(tried > 10_000 && halves > 1_000, "{halves} of {tried} pixels have something by halves");
 }
 
+#[test]
+fn what_is_there_at_any_of_several_moments_is_whole() {
+    let mut random = Random(5);
+    let all = panes(4, &mut random);
+    let dates: Vec<Years> =
+        vec![[Some(1800), Some(1850)], [Some(1900), None], [Some(1860), Some(1870)], [None, Some(1890)]];
+    let mut studio = dated(&all, &dates);
+    let text = |text: &str| Parameter::Text(text.to_owned());
+    let at = Parameter::Texts(vec!["1820".to_owned(), "1950".to_owned()]);
+    let parameters = [("at".to_owned(), at), ("show".to_owned(), text("any"))];
+    let any = Handled { handler: "aggregate".into(), parameters: parameters.into() };
+    let ball = Ball { center: DVec3::new(0.15, 5.0, 5.0), radius: 50.0, steps: vec![] };
+    let mut in_lens = of_context(vec![]);
+    in_lens.moment = Moment::of_year(1865);
+    in_lens.lenses = vec![Lens { time: vec![any.clone()], ..ball.lens(0) }];
+    let mut of_scene = of_context(vec![]);
+    of_scene.moment = Moment::of_year(1865);
+    of_scene.time_steps = vec![any];
+    // All but the third, as if it had never been.
+    let gone = [rule("eraser", &[], Some(&[2]), false)];
+    let mut expected = of_context(gone.to_vec());
+    expected.moment = None;
+    for backend in BOTH {
+        let [one, other, expected] = [&in_lens, &of_scene, &expected].map(|scene| drawn(&mut studio, scene, backend));
+        for found in [one, other] {
+            assert_eq!((&found.object_id, &found.depth), (&expected.object_id, &expected.depth), "{backend:?}");
+            assert!(found.rgba == expected.rgba, "{backend:?}");
+        }
+    }
+}
+
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
     studio.render(scene, &Request { aovs: ALL, backend, ..Request::plain([240, 200]) }).expect("a picture")
 }
