@@ -35,6 +35,7 @@ macro_rules! scenes {
 pub const SCENES: &[(&str, &str)] = scenes! {
     "bent-city"
     "call-outs"
+    "changed"
     "delft-age"
     "delft-detail"
     "delft-heights"
@@ -50,6 +51,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "lowered"
     "market-square"
     "near-and-far"
+    "old-town-in-time"
     "one-house"
     "out-of-sight"
     "panorama"

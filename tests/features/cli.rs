@@ -153,8 +153,8 @@ fn info_as_json_is_the_object_of_the_contract() {
     let facts: Value = serde_json::from_slice(&output.stdout).unwrap();
     let keys: Vec<_> = facts.as_object().unwrap().keys().map(String::as_str).collect();
     let expected =
-        ["format", "version", "crs", "crs_raw", "extent", "objects", "lods", "attributes", "joins", "time", "textures"];
-    assert_eq!(keys, [&expected[..], &["faces_dropped", "warnings"]].concat());
+        ["format", "version", "crs", "crs_raw", "extent", "objects", "lods", "attributes", "joins", "timetables", "time"];
+    assert_eq!(keys, [&expected[..], &["textures", "faces_dropped", "warnings"]].concat());
     assert_eq!((&facts["joins"], &facts["time"]), (&json!([]), &Value::Null));
     assert_eq!(facts["crs"], "EPSG:7415");
     assert_eq!(facts["extent"], json!({"min": [100.0, 200.0, 0.0], "max": [110.0, 220.0, 3.0]}));
