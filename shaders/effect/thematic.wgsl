@@ -176,7 +176,7 @@ fn effect(color: vec3f, point: Point, p: Parameters) -> vec3f {
     var code = 0u;
     switch what {
         case OF_OBJECTS: {
-            code = object_values[p.first + 2u + point.object];
+            code = value_then(p.first, object_values[p.first + 2u + point.object]);
         }
         case OF_FACES: {
             code = color_of_face(p.first + 2u, point.object, point.surface);

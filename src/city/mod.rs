@@ -13,6 +13,7 @@ pub mod edges;
 pub mod facts;
 pub mod gltf;
 pub mod ground;
+pub mod history;
 pub mod join;
 pub mod json;
 pub mod kept_measures;

@@ -23,6 +23,7 @@ use rustc_hash::{FxBuildHasher, FxHashMap};
 use crate::{
     city::{
         crs::Frames,
+        history::History,
         kept_measures::Measured,
         side_table::JoinFacts,
         strings::Strings,
@@ -146,6 +147,8 @@ pub struct CityModel {
     pub faces_dropped: u64,
     /// The side tables whose attributes its objects have.
     pub joins: Vec<JoinFacts>,
+    /// Attributes that change over time, by name; objects have the last of their values as plain ones.
+    pub histories: FxHashMap<StringId, History>,
     /// The objects that move, ascending.
     pub moves: Vec<Keyframes>,
     /// The timetables by which they do.

@@ -13,6 +13,8 @@ pub struct Join {
     pub key: String,
     /// The attribute of objects that has the same; `None`: their id.
     pub attribute: Option<String>,
+    /// The columns that say since when and until when the values of a row hold: attributes that change over time.
+    pub valid: [Option<String>; 2],
 }
 
 /// What was joined.

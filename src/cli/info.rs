@@ -134,7 +134,7 @@ impl FromStr for SideTable {
         };
         match file.is_empty() {
             true => Err("FILE is missing".to_owned()),
-            false => Ok(Self(Join { file: file.into(), key: key.to_owned(), attribute })),
+            false => Ok(Self(Join { file: file.into(), key: key.to_owned(), attribute, ..Join::default() })),
         }
     }
 }

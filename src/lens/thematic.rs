@@ -10,11 +10,13 @@ use crate::{
         breaks::{Classing, borders},
         color::{Srgb, parse_hex},
         effect_use::{EffectUse, Parameter},
+        epoch::TIMELESS,
         measures::{self, Measure},
         ramp::{MAX_CATEGORIES, RampColors, RampKind},
         relief,
         source::{Source, drawn, hint_for},
     },
+    time::Moment,
 };
 
 /// Default colour of objects without a value: a grey no ramp holds.
@@ -323,7 +325,9 @@ impl ThematicScale {
         let is_of_faces = |model: &&CityModel| Source::find(model, &self.attribute).is_some_and(|s| s.is_of_faces());
         if !models.iter().any(is_of_faces) {
             let colors = models.iter().flat_map(|model| self.object_colors(model));
-            return [relief, 0].into_iter().chain(colors.map(bytes)).collect();
+            let mut words: Vec<u32> = [relief, 0].into_iter().chain(colors.map(bytes)).collect();
+            self.put_histories(models, &mut words, bytes);
+            return words;
         }
         let faces: Vec<Vec<(u32, Srgb)>> = models.iter().flat_map(|model| self.face_colors(model)).collect();
         let mut words = vec![relief, measures::OF_FACES, bytes(self.no_data)];
@@ -337,6 +341,32 @@ impl ThematicScale {
         words.insert(2, at + 1);
         words.extend(faces.into_iter().flatten().flat_map(|(normal, color)| [normal, bytes(color)]));
         words
+    }
+
+    /// Has the colours of objects whose attribute changes over time lead to lists behind all (`lib/varying.wgsl`).
+    fn put_histories(&self, models: &[&CityModel], words: &mut Vec<u32>, bytes: impl Fn(Srgb) -> u32) {
+        let mut first = 2;
+        for model in models {
+            let name = model.strings.find(&self.attribute).filter(|name| model.histories.contains_key(name));
+            for object in 0..model.objects.len() as u32 {
+                let Some(own) = name.and_then(|name| model.history_of(object, name)) else { continue };
+                // A byte less than 2^32 is left: of more there is the last value alone.
+                let place = words.len();
+                if place >= 1 << 24 {
+                    return;
+                }
+                words[first + object as usize] = place as u32;
+                // Before the first it has none.
+                let before = own.first().filter(|(begin, _)| begin.is_some()).map(|_| (None, None));
+                let all: Vec<_> = before.into_iter().chain(own.iter().copied()).collect();
+                words.push(all.len() as u32);
+                for (begin, value) in all {
+                    words.extend(begin.map_or(TIMELESS, Moment::words));
+                    words.push(bytes(self.color_of(value, &model.strings)));
+                }
+            }
+            first += model.objects.len();
+        }
     }
 
     fn counted(&self, values: &[Option<Value>], strings: &Strings, wanted: Option<&[String]>) -> Vec<LegendEntry> {

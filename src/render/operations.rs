@@ -178,6 +178,8 @@ pub struct Operations {
     pub partly: bool,
     /// Whether some move.
     pub moves: bool,
+    /// Whether some look otherwise at other moments.
+    pub varies: bool,
     /// Which objects of the scene's own city that is.
     pub presence: Arc<[Presence]>,
     /// What lenses do to the moment, bottom lens first.
@@ -212,7 +214,7 @@ impl Operations {
         let Beside { tables, time, point_px } = *beside;
         let mut out =
             Self { uber: Self::uber_of(context, lenses), shape_tests: each_once(tests.sun), ..Self::default() };
-        out.add_time(time, visible);
+        out.add_time(time, visible, models);
         out.add_coming(time);
         out.uber.tests = each_once(tests.picture);
         out.uber.leaves = each_once(tests.leaves);
@@ -259,9 +261,11 @@ impl Operations {
     }
 
     /// Puts when objects are there among the values of objects, before all else: where it begins, shaders know.
-    fn add_time(&mut self, time: &SceneTime, visible: &[bool]) {
+    fn add_time(&mut self, time: &SceneTime, visible: &[bool], models: &[&CityModel]) {
+        let has_histories = models.iter().any(|model| !model.histories.is_empty());
         let has_any = || time.lifetimes.iter().any(|lifetimes| lifetimes.has_any());
-        self.timed = time.moves || (time.epochs.is_any() && has_any());
+        self.varies = time.epochs.is_any() && has_histories;
+        self.timed = time.moves || self.varies || (time.epochs.is_any() && has_any());
         if !self.timed {
             return;
         }
@@ -277,6 +281,7 @@ impl Operations {
         });
         self.epochs = uses.filter(|used| visible.get(used.lens as usize) == Some(&true)).collect();
         self.moves = time.moves;
+        self.uber.varies = self.varies;
         (self.uber.timed, self.uber.partly, self.uber.moves) = (true, self.partly, self.moves);
         self.uber.epochs = each_once(time.epochs.operators.iter().map(|(_, operator)| operator.handler).collect());
     }
@@ -339,7 +344,10 @@ impl Operations {
     pub fn looks_like_context(&self) -> bool {
         let hides = |o: &Operation| shader::handlers()[o.effect as usize].kind == EffectKind::Hide;
         let is_of_lens = |o: &&Operation| o.lens.is_some();
-        self.bodies.is_empty() && self.contents.is_empty() && self.list.iter().filter(is_of_lens).all(hides)
+        !self.varies
+            && self.bodies.is_empty()
+            && self.contents.is_empty()
+            && self.list.iter().filter(is_of_lens).all(hides)
     }
 
     /// Whether a lens of the scene has own content, in whatever frame, or something moves.
@@ -363,8 +371,8 @@ impl Operations {
     /// What shading has to do outside all lenses.
     pub fn context_plan(&self, haze: bool) -> Plan {
         let steps = self.steps(&[], |_| None);
-        let Self { timed, partly, moves, .. } = *self;
-        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, moves, ..Plan::default() }
+        let Self { timed, partly, moves, varies, .. } = *self;
+        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, moves, varies, ..Plan::default() }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
@@ -402,8 +410,8 @@ impl Operations {
         };
         let epochs = self.epochs.iter().filter_map(epoch).collect();
         let lines = draws_lines(&steps);
-        let Self { timed, partly, moves, .. } = *self;
-        Plan { lenses, steps, haze, masks, lines, contents, timed, partly, moves, epochs, ..Plan::default() }
+        let Self { timed, partly, moves, varies, .. } = *self;
+        Plan { lenses, steps, haze, masks, lines, contents, timed, partly, moves, varies, epochs, ..Plan::default() }
     }
 
     /// The list as steps; `place` finds a lens in the plan.

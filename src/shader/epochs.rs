@@ -108,13 +108,19 @@ pub(super) fn uber(uber: &Uber, handlers: &[EffectDefinition], asked: &Asked, ru
         let _ = writeln!(text, "        case {number}u: {{ return {call}; }}");
     }
     let (subject, head) = (asked.subject, asked.head(uber.partly));
-    let _ = write!(
-        text,
-        "        default: {{ return moment; }}
-    }}
-}}
+    text.push_str("        default: { return moment; }\n    }\n}\n\n");
+    let own = match asked.suffix == OF_LAYER.suffix {
+        true => all_bits(subject, runs, uber.partly),
+        false => set_bits(subject, runs),
+    };
+    let _ = write!(text, "{head}{own}    return moment;\n}}\n\n");
+    text + &exists(asked, uber.partly, uber.moves)
+}
 
-{head}    for (var word = 0u; word < words_of_lenses(); word++) {{
+/// The operators of the lenses that may hold some of an object: only those that may act are gone through.
+fn set_bits(subject: &str, runs: &str) -> String {
+    format!(
+        "    for (var word = 0u; word < words_of_lenses(); word++) {{
         var bits = lenses_that_may({subject}.object, word);
         let surely = lenses_that_surely_do({subject}.object, word);
         // Only those that may act are gone through.
@@ -139,17 +145,54 @@ pub(super) fn uber(uber: &Uber, handlers: &[EffectDefinition], asked: &Asked, ru
             }}
         }}
     }}
-    return moment;
-}}
-
 "
-    );
-    text + &exists(asked, uber.partly, uber.moves)
+    )
 }
+
+/// The same of all lenses, whether they may hold some of it or not: what shades takes pixels together whose objects differ, and of loops that
+/// end here so and there so Mesa 22.3 leaves something else behind.
+fn all_bits(subject: &str, runs: &str, partly: bool) -> String {
+    let (keep, put_back) = if partly { (KEEP, PUT_BACK) } else { ("", "") };
+    format!(
+        "    for (var number = 0u; number < table.epochs.y; number++) {{
+        let of_lens = invokers[table.epochs.x + number];
+        let bit = 1u << (number % 32u);
+        let may = (lenses_that_may({subject}.object, number / 32u) & bit) != 0u;
+        let surely = (lenses_that_surely_do({subject}.object, number / 32u) & bit) != 0u;
+        if of_lens.place < of_lens.call {{
+            let by = invoker(of_lens.place);
+            let is_here = {runs};
+            let acts = may && (surely || is_here);
+            for (var i = of_lens.place; i < of_lens.call; i++) {{
+{keep}                let then = after(moment, invoker(i));
+                moment.hour = select(moment.hour, then.hour, acts);
+                moment.micro = select(moment.micro, then.micro, acts);
+{put_back}            }}
+        }}
+    }}
+"
+    )
+}
+
+/// What operators do beside the moment, kept where they do not act.
+const KEEP: &str = "                let past = ghost_past;
+                let future = ghost_future;
+                let any = shows_any;
+";
+const PUT_BACK: &str = "                if !acts {
+                    ghost_past = past;
+                    ghost_future = future;
+                    shows_any = any;
+                }
+";
 
 /// `exists`: whether an object is there at a place; of what may be there by halves, `presence`: how much of it. What moves is there where the
 /// moment shows for which it is drawn.
 fn exists(asked: &Asked, partly: bool, moves: bool) -> String {
+    if !partly && asked.suffix == OF_LAYER.suffix {
+        // Layers that are there are there wholly, and so is what is shaded.
+        return String::new();
+    }
     let Asked { subject, parameters, arguments, suffix } = asked;
     let turn = if moves { format!("    let turn = turn_of({subject}.surface);\n") } else { String::new() };
     let (stays, is_its) =

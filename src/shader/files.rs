@@ -4,10 +4,11 @@ use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     library::{
         BLEND, BORDER, BORDER_WIDTH, CITIES, CLASS, CLEAR, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION,
-        COMBINED_SPRITE, DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FORM, FRAGMENT, File,
-        GLASS, INSTANTS, LENS, LENS_SPRITE, LIFETIME, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS, MOMENT,
-        MOVING, OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE,
-        SIGHT, SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE, SURFACE, TEXEL, TRANSPARENCY, VIEW, VIEW_UNIFORM,
+        COMBINED_SPRITE, DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FIXED, FORM, FRAGMENT,
+        File, GLASS, INSTANTS, LENS, LENS_SPRITE, LIFETIME, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS,
+        MOMENT, MOVING, OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES,
+        SHELL_SPRITE, SIGHT, SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE, SURFACE, TEXEL, TRANSPARENCY, VARYING, VIEW,
+        VIEW_UNIFORM,
     },
     plan::program::Program,
 };
@@ -47,6 +48,7 @@ pub(super) fn of_shading(program: &Program, handlers: &[EffectDefinition]) -> Ve
     let (materials, filters) = (has(EffectKind::Material), has(EffectKind::Filter));
     let mut files = vec![VIEW, SURFACE, COLOR, PACKED, LIGHT, OBJECTS, POINT, SIGHT];
     files.extend(of_time(program));
+    files.push(values(program));
     files.extend(of_lenses(program));
     files.extend(if parts.shells { of_spans(program) } else { Vec::new() });
     files.extend(used(&[
@@ -78,7 +80,12 @@ pub(super) fn of_sections(program: &Program) -> Vec<File> {
 
 /// What is known of objects.
 pub(super) fn of_objects(program: &Program) -> Vec<File> {
-    [&[OBJECTS], &of_time(program)[..]].concat()
+    [&[OBJECTS], &of_time(program)[..], &[values(program)]].concat()
+}
+
+/// How values of objects are read.
+fn values(program: &Program) -> File {
+    if program.has().varies { VARYING } else { FIXED }
 }
 
 /// What is known of when they are there.

@@ -104,6 +104,8 @@ files! {
     LIFETIME = "lib/lifetime.wgsl";
     INSTANTS = "lib/instants.wgsl";
     MOVING = "lib/moving.wgsl";
+    FIXED = "lib/fixed.wgsl";
+    VARYING = "lib/varying.wgsl";
     POINT = "lib/point.wgsl";
     LINE = "lib/line.wgsl";
     TRANSPARENCY = "lib/transparency.wgsl";

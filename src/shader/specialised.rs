@@ -17,6 +17,7 @@ pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str],
     }
     text.push_str("// ==== this scene\n\n");
     text.push_str(&writer.classes());
+    text.push_str(&if plan.varies { writer.moments() } else { String::new() });
     match &plan.regions {
         None => {
             text.push_str(&writer.shade(""));

@@ -118,6 +118,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         timed: seed % 3 < 2,
         partly: seed % 3 == 1,
         moves: seed % 3 < 2 && seed % 7 < 3,
+        varies: seed % 3 < 2 && seed % 5 < 2,
         epochs: epochs_of(seed),
         ..Plan::default()
     };
@@ -144,6 +145,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         timed: plan.timed,
         partly: plan.partly,
         moves: plan.moves,
+        varies: plan.varies,
         epochs: Program::Specialised(plan.clone()).epochs(),
     };
     let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();

@@ -34,6 +34,7 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition], shading: &Shadi
     text.push_str(&table::declared());
     text.push_str(&classes(uber));
     text.push_str(&TILE_INVOKERS.paragraph());
+    text.push_str(&if uber.varies { moments(uber, handlers) } else { String::new() });
     text.push_str(&invoke(uber, "material", &[EffectKind::Material], handlers));
     text.push_str(&invoke(uber, "light", &[EffectKind::Light], handlers));
     text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post, EffectKind::Filter], handlers));
@@ -71,15 +72,18 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition], shading: &Shadi
     text
 }
 
+/// Which moment shows at a layer, or at what is shaded, and how much of it is there.
+fn moments(uber: &Uber, handlers: &[EffectDefinition]) -> String {
+    let runs = if fades(uber) { "is_layer_there(by, point, classes)" } else { "runs(by, classes)" };
+    let there = if fades(uber) { IS_LAYER_THERE } else { "" };
+    epochs::operators(&Program::Uber(uber.clone()), handlers) + there + &epochs::uber(uber, handlers, &OF_LAYER, runs)
+}
+
 /// `opacity_at`, for `pass/composite.wgsl`.
 pub(super) fn opacity(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let head = "fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n";
-    let mut text = epochs::operators(&Program::Uber(uber.clone()), handlers);
-    if uber.partly {
-        let runs = if fades(uber) { "is_layer_there(by, point, classes)" } else { "runs(by, classes)" };
-        text.push_str(if fades(uber) { IS_LAYER_THERE } else { "" });
-        text.push_str(&epochs::uber(uber, handlers, &OF_LAYER, runs));
-    }
+    // Where looks change over time, shading has it already.
+    let mut text = if uber.partly && !uber.varies { moments(uber, handlers) } else { String::new() };
     let end = opacity_end(uber.clear_materials, uber.partly);
     // Of materials alone there are no rules.
     if !used(uber, handlers).any(|(_, h)| h.kind == EffectKind::Opacity) {

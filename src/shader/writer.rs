@@ -178,6 +178,7 @@ impl Writer<'_> {
     /// `styled`.
     pub(super) fn shade(&self, suffix: &str) -> String {
         let mut text = format!("fn shade{suffix}(point: ptr<function, Point>, classes: Classes) -> vec3f {{\n");
+        text.push_str(if self.plan.varies { MOMENT_HERE } else { "" });
         if self.has(EffectKind::Material) {
             text.push_str("    var material = Material(as_is((*point).base), (*point).emission, vec3f(0.0), 32.0);\n");
             text.push_str(&self.statements(EffectKind::Material));
@@ -208,14 +209,17 @@ impl Writer<'_> {
         text
     }
 
+    /// Which moment shows at a layer, or at what is shaded, and how much of it is there.
+    pub(super) fn moments(&self) -> String {
+        let (classes, interest) = (|lens| format!("classes.lens_{lens}"), |lens| format!("classes.interest_{lens}"));
+        let operators = epochs::operators(&Program::Specialised(self.plan.clone()), self.handlers);
+        operators + &epochs::specialised(self.plan, self.handlers, &OF_LAYER, classes, interest)
+    }
+
     /// How much of a translucent layer is seen, for `pass/composite.wgsl`.
     pub(super) fn opacity(&self) -> String {
-        let mut text = epochs::operators(&Program::Specialised(self.plan.clone()), self.handlers);
-        if self.plan.partly {
-            let (classes, interest) =
-                (|lens| format!("classes.lens_{lens}"), |lens| format!("classes.interest_{lens}"));
-            text.push_str(&epochs::specialised(self.plan, self.handlers, &OF_LAYER, classes, interest));
-        }
+        // Where looks change over time, shading has it already.
+        let mut text = if self.plan.partly && !self.plan.varies { self.moments() } else { String::new() };
         text.push_str("fn opacity_at(point: Point, classes: Classes) -> f32 {\n    var opacity = 1.0;\n");
         for (step, handler) in self.plan.steps_of(EffectKind::Opacity, self.handlers) {
             let first = format!("{}u", step.parameters);
@@ -251,6 +255,9 @@ impl Writer<'_> {
         }
     }
 }
+
+/// Says at which moment what is shaded is seen.
+pub(super) const MOMENT_HERE: &str = "    moment_here = moment_of_layer_at(*point, classes);\n";
 
 /// The end of `opacity_at`: of what is translucent itself, or there by halves, a lens shows that share.
 pub(super) fn opacity_end(has_clear_materials: bool, partly: bool) -> String {

@@ -57,7 +57,7 @@ fn check(register: &Path) -> Result<(), Failed> {
     let mut own = ids[..2575].to_vec();
     own.push("BATIMENT of none".to_owned());
     let file = folder.write("lyon.city.json", city(&own));
-    let join = Join { file: register.to_owned(), key: "ID".into(), attribute: None };
+    let join = Join { file: register.to_owned(), key: "ID".into(), ..Join::default() };
     let options = LoadOptions { joins: vec![join], ..LoadOptions::default() };
     let model = load(&[file], &options, &Quiet)?;
     model.validate()?;

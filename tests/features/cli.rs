@@ -152,8 +152,19 @@ fn info_as_json_is_the_object_of_the_contract() {
     assert_eq!(code(&output), 0, "{}", err(&output));
     let facts: Value = serde_json::from_slice(&output.stdout).unwrap();
     let keys: Vec<_> = facts.as_object().unwrap().keys().map(String::as_str).collect();
-    let expected =
-        ["format", "version", "crs", "crs_raw", "extent", "objects", "lods", "attributes", "joins", "timetables", "time"];
+    let expected = [
+        "format",
+        "version",
+        "crs",
+        "crs_raw",
+        "extent",
+        "objects",
+        "lods",
+        "attributes",
+        "joins",
+        "timetables",
+        "time",
+    ];
     assert_eq!(keys, [&expected[..], &["textures", "faces_dropped", "warnings"]].concat());
     assert_eq!((&facts["joins"], &facts["time"]), (&json!([]), &Value::Null));
     assert_eq!(facts["crs"], "EPSG:7415");

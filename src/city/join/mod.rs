@@ -7,11 +7,15 @@ use std::path::PathBuf;
 
 use rustc_hash::FxHashMap;
 
-use crate::city::{
-    join::table::{Cell, Table},
-    load::{error::LoadError, input},
-    model::{Attribute, CityModel, StringId, Value},
-    side_table::{Join, JoinFacts},
+use crate::{
+    city::{
+        history::breakpoints,
+        join::table::{Cell, Table},
+        load::{error::LoadError, input},
+        model::{Attribute, CityModel, StringId, Value},
+        side_table::{Join, JoinFacts},
+    },
+    time::{Interval, Moment},
 };
 
 /// Keys of rows without an object that are named.
@@ -41,6 +45,10 @@ impl CityModel {
         };
         let names: Vec<StringId> = table.columns().iter().map(|name| self.strings.intern(name)).collect();
         let mut added: FxHashMap<u32, Vec<Attribute>> = FxHashMap::default();
+        let valid = valid_columns(&table, join)?;
+        let is_over_time = valid != [None, None];
+        let mut over_time: FxHashMap<u32, Vec<Row>> = FxHashMap::default();
+        let mut wrong: Option<LoadError> = None;
         table.each_row(|key, cells| {
             facts.rows += 1;
             let Some(objects) = owners.get(key) else {
@@ -50,13 +58,24 @@ impl CityModel {
                 }
                 return;
             };
-            if objects.iter().any(|object| added.contains_key(object)) {
+            if !is_over_time && objects.iter().any(|object| added.contains_key(object)) {
                 facts.repeated += 1;
                 return;
             }
             facts.joined += 1;
             let mut own = Vec::with_capacity(names.len());
+            let mut dates = [None; 2];
             cells.each(|column, cell| {
+                if let Some(end) = valid.iter().position(|of| *of == Some(column)) {
+                    match date(&cell) {
+                        Ok(date) => dates[end] = date,
+                        Err(message) => {
+                            let place = format!("row {} of {key}, {}", facts.rows, table.columns()[column]);
+                            wrong.get_or_insert_with(|| LoadError::at(&join.file, place, message));
+                        }
+                    }
+                    return;
+                }
                 let value = match cell {
                     Cell::Boolean(is) => Value::Boolean(is),
                     Cell::Integer(number) => Value::Integer(number),
@@ -68,14 +87,42 @@ impl CityModel {
                 own.push(Attribute { name: names[column], value });
             });
             for &object in objects {
-                added.insert(object, own.clone());
+                match is_over_time {
+                    true => over_time.entry(object).or_default().push((dates[0], dates[1], own.clone())),
+                    false => _ = added.insert(object, own.clone()),
+                }
             }
         })?;
-        facts.objects = added.len() as u64;
         drop(owners);
+        if let Some(error) = wrong {
+            return Err(error);
+        }
+        let is_date = |name: &String| valid.iter().flatten().any(|column| table.columns()[*column] == *name);
+        facts.attributes.retain(|name| !is_date(name));
+        self.add_histories(over_time, &mut added);
+        facts.objects = added.len() as u64;
         self.add_attributes(&added);
         self.joins.push(facts);
         Ok(())
+    }
+
+    /// Adds what rows say over time, and to `added` what holds last.
+    fn add_histories(&mut self, over_time: FxHashMap<u32, Vec<Row>>, added: &mut FxHashMap<u32, Vec<Attribute>>) {
+        for (object, mut rows) in over_time {
+            rows.sort_by_key(|(begin, ..)| *begin);
+            let mut names: Vec<StringId> = rows.iter().flat_map(|row| &row.2).map(|own| own.name).collect();
+            names.sort_unstable();
+            names.dedup();
+            for name in names {
+                let value = |own: &[Attribute]| own.iter().find(|own| own.name == name).map(|own| own.value);
+                let said: Vec<_> =
+                    rows.iter().filter_map(|(begin, end, own)| Some((*begin, *end, value(own)?))).collect();
+                if let Some((.., last)) = said.last() {
+                    added.entry(object).or_default().push(Attribute { name, value: *last });
+                }
+                self.histories.entry(name).or_default().of.insert(object, breakpoints(&said));
+            }
+        }
     }
 
     /// The objects that a key may mean, in their order.
@@ -127,6 +174,31 @@ impl CityModel {
         }
         self.attributes = all;
     }
+}
+
+/// What a row says, from when until when.
+type Row = (Option<Moment>, Option<Moment>, Vec<Attribute>);
+
+/// Which columns say since when and until when rows hold.
+fn valid_columns(table: &Table, join: &Join) -> Result<[Option<usize>; 2], LoadError> {
+    let column = |name: &String| {
+        let at = table.columns().iter().position(|column| column == name);
+        at.ok_or_else(|| {
+            LoadError::new(&join.file, format!("has no column \"{name}\"; it has {}", table.columns().join(", ")))
+        })
+    };
+    let [from, until] = &join.valid;
+    Ok([from.as_ref().map(column).transpose()?, until.as_ref().map(column).transpose()?])
+}
+
+/// The beginning of what a cell says; open ends have none.
+fn date(cell: &Cell) -> Result<Option<Moment>, String> {
+    let text = match cell {
+        Cell::Text(text) => (*text).to_owned(),
+        Cell::Integer(number) => number.to_string(),
+        _ => return Err("must be a time: \"1890\", \"1890-05-03\" or \"1890-05-03T14:00\"".to_owned()),
+    };
+    Interval::parse(&text).map(|interval| interval.begin)
 }
 
 /// Notes an owner of a key.

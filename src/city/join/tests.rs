@@ -47,7 +47,8 @@ fn joined(text: &[u8], key: &str, attribute: Option<&str>) -> Result<CityModel, 
     let file = std::env::temp_dir().join(format!("veduta-join-{}-{number}", std::process::id()));
     std::fs::write(&file, text).expect("a temporary file");
     let mut model = city();
-    let join = Join { file: file.clone(), key: key.to_owned(), attribute: attribute.map(str::to_owned) };
+    let join =
+        Join { file: file.clone(), key: key.to_owned(), attribute: attribute.map(str::to_owned), ..Join::default() };
     let result = model.join(&join);
     std::fs::remove_file(&file).expect("the temporary file");
     result.map_err(|error| error.to_string().replace(&file.display().to_string(), "T"))?;
@@ -100,4 +101,35 @@ fn what_is_no_table_is_told() {
     }
     let missing = Join { file: "no/such.csv".into(), ..Join::default() };
     assert!(city().join(&missing).expect_err("none").to_string().starts_with("no/such.csv: cannot be read"));
+}
+
+#[test]
+fn rows_with_dates_are_values_over_time() {
+    let file = std::env::temp_dir().join(format!("veduta-over-time-{}.csv", std::process::id()));
+    let mut read = |text: &str, until: &str| {
+        std::fs::write(&file, text).expect("a temporary file");
+        let valid = [Some("since".to_owned()), Some(until.to_owned())];
+        let join = Join { file: file.clone(), valid, ..Join::default() };
+        let mut model = city();
+        let joined = model.join(&join).map_err(|error| error.to_string());
+        joined.map(|()| model)
+    };
+    let text = "id,use,since,until\na,shop,1900,1950\na,home,,1900\nb,mill,1700,\nd,mill,1700,\n";
+    let model = read(text, "until").expect("a table");
+    let name = model.strings.find("use").expect("the attribute");
+    let year = |year: i64| crate::time::Moment::of_year(year);
+    let value = |text: &str| model.strings.find(text).map(Value::String);
+    let expected = [(None, value("home")), (year(1900), value("shop")), (year(1950), None)];
+    assert_eq!(model.history_of(0, name), Some(&expected[..]));
+    assert_eq!(model.history_of(1, name), Some(&[(year(1700), value("mill"))][..]));
+    assert_eq!(model.history_of(2, name), None);
+    assert!(attributes(&model, 0).contains(&"use=\"shop\"".to_owned()), "what began last");
+    let facts = &model.joins[0];
+    assert_eq!((facts.rows, facts.joined, facts.objects, facts.repeated), (4, 3, 2, 0));
+    assert_eq!(facts.attributes, ["use"], "dates are none");
+    let wrong = |text: &str, until: &str| read(text, until).err().unwrap_or_default();
+    assert!(wrong(text, "end").contains("has no column \"end\"; it has use, since, until"));
+    let message = wrong("id,use,since,until\na,shop,soon,1950\n", "until");
+    assert!(message.contains("row 1 of a, since") && message.contains("soon"), "{message}");
+    std::fs::remove_file(&file).expect("the temporary file");
 }

@@ -336,6 +336,23 @@ const JOIN_ROWS: &[Row<Join>] = &[
         Same,
         |join: Join| join.attribute
     ),
+    field!(
+        key(
+            "from",
+            Kind::Text,
+            "none",
+            "",
+            "The column that says since when a row holds: its attributes change over time, and an object has several rows.",
+            "\"since\"",
+        ),
+        Same,
+        |join: Join| join.valid[0]
+    ),
+    field!(
+        key("until", Kind::Text, "none", "", "The column that says until when, not included.", "\"until\""),
+        Same,
+        |join: Join| join.valid[1]
+    ),
 ];
 
 /// `[sun]`.

@@ -693,7 +693,7 @@ prop_compose! {
         scene.city.files = files.into_iter().filter(|f| !f.contains("${")).map(Into::into).collect();
         scene.city.lod = lod.map(|tenths| crate::city::Lod { tenths }.to_string());
         scene.city.ground = ground;
-        scene.city.joins = (0..scene.lenses.len() % 3).map(|i| Join { file: format!("t{i}.csv").into(), key: from.clone().unwrap_or_default(), attribute: undated.then(|| "id".into()) }).collect();
+        scene.city.joins = (0..scene.lenses.len() % 3).map(|i| Join { file: format!("t{i}.csv").into(), key: from.clone().unwrap_or_default(), attribute: undated.then(|| "id".into()), valid: [clay.then(|| "since".into()), undated.then(|| "until".into())] }).collect();
         scene.city.changes = moment.and_then(Moment::from_micros).into_iter().map(|at| CityChange {
             attribute: if undated { "change".into() } else { "since".into() },
             between: if clay { Between::Moments([at, at]) } else { Between::Files { files: vec!["old.city.json".into()], key: from.clone() } },

@@ -52,6 +52,8 @@ pub struct Plan {
     pub partly: bool,
     /// Whether some move, each drawn for the moments that may show of it.
     pub moves: bool,
+    /// Whether some look otherwise at other moments.
+    pub varies: bool,
     /// The time operators of its lenses, bottom lens first.
     pub epochs: Vec<PlanEpoch>,
     /// How places are told apart, for the techniques that are kept for reference; `None`: by accumulation.
@@ -118,7 +120,8 @@ impl Plan {
             is_its && handlers[s.effect as usize].kind != EffectKind::Hide
         };
         let shows = || self.contents.iter().any(|c| c.lens == lens);
-        self.masks || self.lenses[lens as usize].body.is_some() || shows() || self.steps.iter().any(acts)
+        let varies = || self.varies && self.epochs.iter().any(|e| e.lens == lens);
+        self.masks || self.lenses[lens as usize].body.is_some() || shows() || varies() || self.steps.iter().any(acts)
     }
 
     /// Volumes of all its lenses.
@@ -206,8 +209,11 @@ impl Plan {
         self.clear_materials = false;
         self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
         self.contents.clear();
-        self.epochs.clear();
-        (self.timed, self.partly, self.moves) = (false, false, false);
+        self.moves = false;
+        if !self.varies {
+            self.epochs.clear();
+            (self.timed, self.partly) = (false, false);
+        }
         self
     }
 
@@ -219,19 +225,21 @@ impl Plan {
         let steps = self.steps.iter().filter(is_of_layers).cloned().collect();
         let mut lenses = self.lenses.clone();
         lenses.iter_mut().for_each(|lens| lens.body = None);
-        let Self { haze, masks, clear_materials, partly, .. } = *self;
+        let Self { haze, masks, clear_materials, partly, varies, .. } = *self;
         let moves = partly && self.moves;
         // What is there by halves is asked how much of it.
-        let epochs = if partly { self.epochs.clone() } else { Vec::new() };
+        let timed = partly || varies;
+        let epochs = if timed { self.epochs.clone() } else { Vec::new() };
         let all = Self {
             lenses,
             steps,
             haze,
             masks,
             clear_materials,
-            timed: partly,
+            timed,
             partly,
             moves,
+            varies,
             epochs,
             ..Self::default()
         };

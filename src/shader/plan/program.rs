@@ -57,6 +57,10 @@ impl Program {
             Self::Specialised(plan) => plan.moves,
             Self::Uber(uber) => uber.moves,
         };
+        let varies = match self {
+            Self::Specialised(plan) => plan.varies,
+            Self::Uber(uber) => uber.varies,
+        };
         let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
@@ -85,6 +89,7 @@ impl Program {
             timed,
             partly,
             moves,
+            varies,
             borders,
             by_ray,
         }
@@ -194,6 +199,8 @@ pub struct Parts {
     pub partly: bool,
     /// What moves.
     pub moves: bool,
+    /// How places look that have another moment.
+    pub varies: bool,
     /// Soft borders of lenses.
     pub borders: bool,
     /// Borders of lenses along rays.

@@ -44,6 +44,8 @@ pub struct Uber {
     pub partly: bool,
     /// Whether some move.
     pub moves: bool,
+    /// Whether some look otherwise at other moments.
+    pub varies: bool,
     /// The time operators of the scene's lenses, ascending, each once.
     pub epochs: Vec<u32>,
 }
@@ -102,17 +104,18 @@ impl Uber {
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
         let transparency = self.is_seen_through(handlers);
         let effects = self.of(handlers, |kind| !kind.decides_visibility());
-        let untimed = Self { timed: false, partly: false, moves: false, epochs: Vec::new(), ..self };
-        Self { effects, transparency, contents: false, clear_materials: false, ..untimed }
+        let all = Self { effects, transparency, contents: false, clear_materials: false, moves: false, ..self };
+        if all.varies { all } else { Self { timed: false, partly: false, epochs: Vec::new(), ..all } }
     }
 
     /// The part that decides how much of each translucent layer is seen, and how that looks; `None` where nothing is seen
     /// through.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
-        let epochs = if self.partly { self.epochs.clone() } else { Vec::new() };
+        let is_timed = self.partly || self.varies;
+        let epochs = if is_timed { self.epochs.clone() } else { Vec::new() };
         let moves = self.partly && self.moves;
-        let timed = Self { timed: self.partly, moves, epochs, contents: false, ..self.clone() };
+        let timed = Self { timed: is_timed, moves, epochs, contents: false, ..self.clone() };
         let all = Self { effects, bodies: Vec::new(), lines: false, transparency: false, ..timed };
         self.is_seen_through(handlers).then_some(all)
     }
