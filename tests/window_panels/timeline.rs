@@ -14,15 +14,7 @@ fn a_moment_is_typed_stepped_played_and_taken_back() {
     until_drawn(&mut harness);
     harness.check_accessibility();
     assert_eq!(moment(&harness), None, "all times show at first");
-    let typed = |harness: &mut Panels, text: &str| {
-        harness.get_by_label("Moment").focus();
-        harness.step();
-        press(harness, Modifiers::COMMAND, Key::A);
-        press(harness, Modifiers::NONE, Key::Backspace);
-        write(harness, text);
-        press(harness, Modifiers::NONE, Key::Enter);
-        harness.step();
-    };
+    let typed = |harness: &mut Panels, text: &str| retype(harness, "Moment", text);
     typed(&mut harness, "1650");
     assert_eq!(moment(&harness).as_deref(), Some("1650"));
     click(&mut harness, "Step on in time");
