@@ -213,6 +213,7 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Arrows, Shift arrows", "Orbit around what the eye looks at; move along"),
     ("+ and -", "Come nearer to it, and go away"),
     ("Drag the timeline", "Go through time"),
+    ("Drag an object that moves", "Go to the moment at which it comes where the pointer is, along its way"),
     ("Drop files", "Open them; effects (*.wgsl) are added, and read again when they change"),
 ];
 

@@ -117,6 +117,16 @@ impl View {
         Some(pixel.extend(d))
     }
 
+    /// Where a point appears, times a weight, and the weight: linear in the point, so that it holds of what is behind the eye too, where the weight
+    /// is less than 0. The pixel is x and y by the weight.
+    pub fn weighted_pixel(&self, world: DVec3) -> DVec3 {
+        let from_eye = world - self.camera.eye;
+        let weight = if self.is_orthographic() { 1.0 } else { from_eye.dot(self.basis.forward) };
+        let ndc = DVec2::new(from_eye.dot(self.basis.right), from_eye.dot(self.basis.up)) / self.half_extent();
+        let size = DVec2::new(self.size[0].into(), self.size[1].into());
+        (0.5 * size * DVec2::new(weight + ndc.x, weight - ndc.y)).extend(weight)
+    }
+
     /// The sight line through a point of the picture, in pixels (`x + ½, y + ½` = a pixel's centre). Its `t` is D.
     pub fn ray(&self, pixel: DVec2) -> Ray {
         let unit = pixel / DVec2::new(self.size[0].into(), self.size[1].into());
