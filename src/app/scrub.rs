@@ -50,7 +50,8 @@ impl Window {
         };
         let own = scene.steps_of(None);
         let lenses = (0..scene.lenses.len()).filter(|i| scene.lenses[*i].enabled && !scene.lenses[*i].time.is_empty());
-        let all = std::iter::once(own.clone()).chain(lenses.rev().map(|i| [own.clone(), scene.steps_of(Some(i))].concat()));
+        let all =
+            std::iter::once(own.clone()).chain(lenses.rev().map(|i| [own.clone(), scene.steps_of(Some(i))].concat()));
         let shown = all.filter(|steps| goes_along(steps, now, scene.time_s));
         let shown = shown.filter_map(|steps| moment_after(&steps, Some(now), scene.time_s).ok().flatten());
         let (moment, point) = shown.filter_map(stands).next()?;

@@ -63,7 +63,10 @@ pub fn nearest(way: &[Stop], now: Moment, pointer: DVec2, shown: &dyn Fn(DVec3) 
     let on = search.walk(std::iter::once(here).chain(way[next..].iter().copied()), &mut best);
     let back = search.walk(std::iter::once(here).chain(way[..next].iter().rev().copied()), &mut best);
     // Where it is is a place like the others, unless it is nearer on one side.
-    if !on && !back && let Some(off) = search.distance(here.place) {
+    if !on
+        && !back
+        && let Some(off) = search.distance(here.place)
+    {
         search.take(&mut best, &Foot { off, gone: 0.0, at: now });
     }
     best.map(|found| found.at)
@@ -219,9 +222,13 @@ mod tests {
     fn on_a_straight_way_it_is_at_the_foot_of_the_pointer() {
         let way = way(&[(0.0, [0.0; 3]), (10.0, [100.0, 0.0, 0.0]), (30.0, [200.0, 0.0, 0.0])]);
         for now in [-5.0, 0.0, 4.0, 10.0, 29.0, 99.0] {
-            for (pointer, at) in
-                [([25.0, 8.0], 2.5), ([100.0, -3.0], 10.0), ([150.0, 40.0], 20.0), ([-9.0, 1.0], 0.0), ([400.0, 0.0], 30.0)]
-            {
+            for (pointer, at) in [
+                ([25.0, 8.0], 2.5),
+                ([100.0, -3.0], 10.0),
+                ([150.0, 40.0], 20.0),
+                ([-9.0, 1.0], 0.0),
+                ([400.0, 0.0], 30.0),
+            ] {
                 assert!((drag(&way, now, pointer) - at).abs() < 2e-6, "{pointer:?} from {now}");
             }
         }
@@ -285,7 +292,8 @@ mod tests {
             let t = second * TAU / 60.0;
             [200.0 * t.sin(), 200.0 * t.sin() * t.cos(), 0.0]
         };
-        let stops: Vec<(f64, [f64; 3])> = (0..=600).map(|i| (f64::from(i) / 10.0, place(f64::from(i) / 10.0))).collect();
+        let stops: Vec<(f64, [f64; 3])> =
+            (0..=600).map(|i| (f64::from(i) / 10.0, place(f64::from(i) / 10.0))).collect();
         let way = way(&stops);
         let mut now = 20.0;
         for step in 200..400 {
@@ -302,12 +310,14 @@ mod tests {
 
     #[test]
     fn a_stand_is_no_hindrance_and_a_jump_is_no_way() {
-        let halts = way(&[(0.0, [0.0; 3]), (10.0, [100.0, 0.0, 0.0]), (500.0, [100.0, 0.0, 0.0]), (510.0, [200.0, 0.0, 0.0])]);
+        let halts =
+            way(&[(0.0, [0.0; 3]), (10.0, [100.0, 0.0, 0.0]), (500.0, [100.0, 0.0, 0.0]), (510.0, [200.0, 0.0, 0.0])]);
         for now in [5.0, 10.0, 300.0, 505.0] {
             assert_eq!([drag(&halts, now, [150.0, 5.0]), drag(&halts, now, [50.0, 5.0])], [505.0, 5.0]);
         }
         assert_eq!(drag(&halts, 5.0, [100.0, 0.0]), 10.0, "where it comes first");
-        let jumps = way(&[(0.0, [0.0; 3]), (10.0, [100.0, 0.0, 0.0]), (10.0, [0.0, 50.0, 0.0]), (20.0, [100.0, 50.0, 0.0])]);
+        let jumps =
+            way(&[(0.0, [0.0; 3]), (10.0, [100.0, 0.0, 0.0]), (10.0, [0.0, 50.0, 0.0]), (20.0, [100.0, 50.0, 0.0])]);
         assert_eq!(drag(&jumps, 2.0, [50.0, 20.0]), 5.0, "nothing goes along the jump");
         assert_eq!(drag(&jumps, 2.0, [50.0, 48.0]), 15.0);
     }

@@ -288,7 +288,8 @@ mod tests {
         let year = |year: i64| set_to(Moment::of_year(year).unwrap());
         let lens = |name: &str, time: Vec<Handled>| Lens { time, ..Lens::plain(name, TimeLens::default(), [0.0; 3]) };
         let lenses = vec![lens("then", vec![year(1650)]), lens("after", vec![links::link_to("then", "10 years")])];
-        let mut history = History::new(Scene { lenses, time_steps: vec![links::link_to("then", "0 s")], ..Scene::default() });
+        let mut history =
+            History::new(Scene { lenses, time_steps: vec![links::link_to("then", "0 s")], ..Scene::default() });
         let started = history.scene().clone();
         let shown = |scene: &Scene| {
             let steps = linked(&scene.lenses.last().unwrap().time, &scene.lenses).unwrap();

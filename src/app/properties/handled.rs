@@ -214,7 +214,8 @@ enum Sign {
 
 impl Sign {
     fn paint(self, ui: &Ui, button: &egui::Response) {
-        let color = ui.style().interact(button).fg_stroke.color.gamma_multiply(if button.enabled() { 1.0 } else { 0.4 });
+        let color =
+            ui.style().interact(button).fg_stroke.color.gamma_multiply(if button.enabled() { 1.0 } else { 0.4 });
         let at = |x: f32, y: f32| button.rect.center() + vec2(x, y);
         let painter = ui.painter();
         let triangle = |up: f32| {
@@ -324,13 +325,7 @@ fn handled(given: &Given, table: &TomlTable) -> Option<Handled> {
 
 /// A use of a handler in a list: what was given before stays where it fits, what else is needed is as an example has it. `None`: there is no
 /// example of what it needs.
-fn fresh(
-    scene: &Scene,
-    list: &Listed,
-    path: &str,
-    definition: &EffectDefinition,
-    before: &TomlTable,
-) -> Option<Value> {
+fn fresh(scene: &Scene, list: &Listed, path: &str, definition: &EffectDefinition, before: &TomlTable) -> Option<Value> {
     if list.has_words {
         return Some(Value::String(definition.name.clone()));
     }
@@ -338,7 +333,8 @@ fn fresh(
     table.insert(list.named_by.to_owned(), Value::String(definition.name.clone()));
     let mut moments = 0;
     for parameter in &definition.parameters {
-        let fits = |value: &&Value| parameter_of(value).is_some_and(|own| problem_with(&parameter.kind, &own).is_none());
+        let fits =
+            |value: &&Value| parameter_of(value).is_some_and(|own| problem_with(&parameter.kind, &own).is_none());
         let is_name = names_lens(&definition.name, &parameter.name);
         let kept = before.get(&parameter.name).filter(fits).filter(|_| !is_name).cloned();
         let example = || match is_name {
@@ -365,7 +361,9 @@ fn example_of(kind: &ParameterKind, scene: &Scene, moments: &mut i32) -> Option<
         ParameterKind::Span => text("-10 years"),
         ParameterKind::Unit => text("10 years"),
         ParameterKind::Clock => text("12:00"),
-        ParameterKind::Instants => Some(Value::Array(["0 s", "-50 years"].map(|own| Value::String(own.into())).to_vec())),
+        ParameterKind::Instants => {
+            Some(Value::Array(["0 s", "-50 years"].map(|own| Value::String(own.into())).to_vec()))
+        }
         ParameterKind::Boolean => Some(Value::Boolean(false)),
         ParameterKind::Number { min, max } => Some(Value::Float(0.0_f64.clamp(*min, *max))),
         ParameterKind::Word(words) => text(words.first()?),
