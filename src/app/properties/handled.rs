@@ -408,8 +408,8 @@ mod tests {
 
     #[test]
     fn what_is_typed_is_told_while_it_is() {
-        let mut scene = Scene::default();
-        scene.lenses = vec![Lens::plain("then", TimeLens::default(), [0.0; 3])];
+        let lenses = vec![Lens::plain("then", TimeLens::default(), [0.0; 3])];
+        let scene = Scene { lenses, ..Scene::default() };
         let problem = |op: &str, table: &str, name: &str, text: &str| {
             let definition = asked_for(AskedBy::Times).find(|own| own.name == op).expect(op);
             let parameter = definition.parameters.iter().find(|own| own.name == name).expect(name);
