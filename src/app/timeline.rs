@@ -10,7 +10,6 @@ use crate::{
             paint::Sign,
         },
     },
-    figure::moments::label,
     scene::{Animation, Command, Scene},
     time::{Interval, Moment, SECOND, Span},
 };
@@ -170,7 +169,7 @@ impl Window {
         let (Some(camera), at) = (scene.camera, scene.moment.unwrap_or(shown.span[0])) else { return };
         match Animation::with_key(scene.animation.as_ref(), &camera, at, shown.range) {
             Ok(animation) => {
-                let told = label(at, self.timeline.known.as_ref().map(|known| known.told(shown.line)));
+                let told = self.timeline.known.as_ref().map(|known| known.told(shown.line, at)).unwrap_or_default();
                 self.document.edit(format!("camera key at {told}"), |scene| scene.animation = Some(animation));
                 self.say(format!("The view is the camera's key at {told}."));
             }
@@ -290,10 +289,12 @@ impl Window {
         shown.rect = whole.shrink2(vec2(paint::HANDLE_PT, 0.0));
         let rect = shown.rect;
         let Some(known) = &self.timeline.known else { return };
-        let (granularity, finest) = (Some(known.told(shown.line)), known.finest(shown.line));
+        let told = |at: Moment| known.told(shown.line, at);
+        let dragged = known.dragged(shown.line);
+        let now = self.document.scene().moment.map(told).unwrap_or_default();
         let count = ((rect.width() / COLUMN_PT) as usize).clamp(1, MOST_COLUMNS);
         paint::columns(ui, rect, &known.columns(shown.span, count));
-        paint::ends(ui, rect, shown.span.map(|at| label(at, granularity)));
+        paint::ends(ui, rect, shown.span.map(told));
         self.handles(ui, &shown, whole);
         if let Some(animation) = &self.document.scene().animation {
             let moments = animation.camera.iter().filter_map(|key| animation.moment_of(key.at));
@@ -301,10 +302,10 @@ impl Window {
             paint::keys(ui, whole, moments.filter(is_there).map(|at| shown.x(at)));
         }
         if let Some(at) = self.document.scene().moment {
-            paint::cursor(ui, rect, shown.x(at), &label(at, granularity));
+            paint::cursor(ui, rect, shown.x(at), &now);
         }
         if let Some(pointer) = response.interact_pointer_pos() {
-            let at = shown.moment(pointer.x).floored(finest).clamp(shown.span[0], shown.span[1]);
+            let at = shown.moment(pointer.x).floored(dragged).clamp(shown.span[0], shown.span[1]);
             self.timeline.plays = false;
             if self.document.scene().moment != Some(at) {
                 let scene = Scene { moment: Some(at), ..self.document.scene().clone() };
@@ -316,7 +317,7 @@ impl Window {
     /// The handles of what is played: dragged they go, a double click takes them back to the ends.
     fn handles(&mut self, ui: &mut Ui, shown: &Shown, whole: Rect) {
         let [from, until] = shown.range;
-        let unit = self.timeline.known.as_ref().map(|known| known.unit(shown.line));
+        let unit = self.timeline.known.as_ref().map(|known| known.dragged(shown.line));
         for (end, name) in [(0, "Loop from"), (1, "Loop until")] {
             let x = shown.x(shown.range[end]);
             let beside = if end == 0 { x - paint::HANDLE_PT..=x } else { x..=x + paint::HANDLE_PT };
@@ -346,7 +347,7 @@ impl Window {
     /// Goes on in time; round and round where a part of the line is played.
     fn play(&mut self, ui: &Ui, shown: &Shown) {
         let seconds = f64::from(ui.input(|input| input.stable_dt).min(0.5));
-        let Some(finest) = self.timeline.known.as_ref().map(|known| known.finest(shown.line)) else { return };
+        let Some(played) = self.timeline.known.as_ref().map(|known| known.played(shown.line)) else { return };
         let [from, until] = shown.range;
         let per_second = match self.timeline.speed {
             Speed::Whole(times) => times * (shown.span[1] - shown.span[0]) as f64 / PLAY_S,
@@ -362,7 +363,7 @@ impl Window {
         let at = Moment::from_micros(next).unwrap_or(until).clamp(from, until);
         self.timeline.plays = at < until;
         // A full unit may begin before what is played.
-        self.show_moment(at.floored(finest).max(from), shown.span);
+        self.show_moment(at.floored(played).max(from), shown.span);
         ui.ctx().request_repaint();
     }
 }

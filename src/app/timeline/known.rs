@@ -7,6 +7,7 @@ use crate::{
         CityModel,
         lifetime::{Dating, Lifetimes},
     },
+    figure::moments::label,
     time::{DAY, Granularity, HOUR, MINUTE, Moment, SECOND, Span, Unit},
 };
 
@@ -33,7 +34,7 @@ pub struct Known {
     /// The moments at which something comes or goes, ascending; parts come and go with their buildings.
     events: Vec<Moment>,
     /// How finely dates say when.
-    pub granularity: Granularity,
+    granularity: Granularity,
     /// The first and the last moment of what moves.
     moving: Option<[Moment; 2]>,
 }
@@ -100,14 +101,25 @@ impl Known {
         }
     }
 
-    /// What moments are played and dragged in.
-    pub fn finest(&self, line: Line) -> Unit {
+    /// What moments are played in.
+    pub fn played(&self, line: Line) -> Unit {
         if line == Line::Timetables { FINEST } else { self.unit(line) }
     }
 
-    /// How finely moments of a line are told.
-    pub fn told(&self, line: Line) -> Granularity {
-        if line == Line::Timetables { Granularity::Second } else { self.granularity }
+    /// What moments are dragged and told in: no finer than a person means.
+    pub fn dragged(&self, line: Line) -> Unit {
+        match (line, self.unit(line)) {
+            (Line::Timetables, Unit::Micros(unit)) => Unit::Micros(unit.min(SECOND)),
+            (_, unit) => unit,
+        }
+    }
+
+    /// A moment of a line in words.
+    pub fn told(&self, line: Line, at: Moment) -> String {
+        match line {
+            Line::Dates => label(at, Some(self.granularity)),
+            Line::Timetables => label(at.floored(self.dragged(line)), Some(Granularity::Second)),
+        }
     }
 
     /// How many events are in each of so many columns of a span.
