@@ -199,6 +199,19 @@ mod tests {
     proptest! {
         #![proptest_config(crate::seeds::config())]
 
+        /// Linear in the point, and the same pixel before the eye.
+        #[test]
+        fn weighted_pixels_are_pixels_before_the_eye(view in cameras(), a in prop::array::uniform3(-1e3..1e3f64), b in prop::array::uniform3(-1e3..1e3f64)) {
+            let [a, b] = [a, b].map(|place| view.camera.eye + DVec3::from(place));
+            let [own, other] = [a, b].map(|place| view.weighted_pixel(place));
+            match view.pixel(a) {
+                Some(pixel) => prop_assert!((own.truncate() / own.z).distance(pixel.truncate()) <= 1e-6 * (1.0 + pixel.truncate().length())),
+                None => prop_assert!(own.z <= 0.0),
+            }
+            let middle = view.weighted_pixel(a.midpoint(b));
+            prop_assert!(middle.distance(own.midpoint(other)) <= 1e-6 * (1.0 + own.length() + other.length()));
+        }
+
         #[test]
         fn a_ray_goes_where_its_pixel_says(view in cameras(), x in 0.0..1.0f64, y in 0.0..1.0f64, d in 0.6..5e3f64) {
             let pixel = DVec2::new(x * f64::from(view.size[0]), y * f64::from(view.size[1]));
