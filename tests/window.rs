@@ -31,12 +31,13 @@ fn main() -> ExitCode {
     if let Some(tool) = missing {
         eprintln!("ignored: {tool} is not there");
     }
-    let all: [(&str, Hands); 5] = [
+    let all: [(&str, Hands); 6] = [
         ("a_figure_is_made_by_mouse_and_keys", figure),
         ("edits_come_back_after_a_kill", killed),
         ("whoever_closes_is_asked_about_edits", asked),
         ("a_window_closes_while_it_loads", closed_while_loading),
         ("what_a_scene_names_and_is_not_there_is_told", not_there),
+        ("time_is_set_linked_and_gone_through", through_time),
     ];
     let trials = all.map(|(name, trial)| Trial::test(name, trial).with_ignored_flag(missing.is_some()));
     libtest_mimic::run(&arguments, trials.into()).exit_code()
@@ -454,4 +455,72 @@ fn not_there() -> Result<(), Failed> {
         desk.quits()?;
     }
     Ok(())
+}
+
+/// The moment of the first time lens, in the panel on the left; of the second one the button that links it, what it offers first, and the delay.
+const AT: [i32; 2] = [115, 396];
+const LINK: [i32; 2] = [146, 458];
+const FIRST: [i32; 2] = [146, 485];
+const DELAY: [i32; 2] = [115, 458];
+/// On the timeline.
+const EARLY: [i32; 2] = [700, 748];
+
+/// A time lens shows 1650, another one what is ten years later; the timeline is dragged, and that is taken back.
+fn through_time() -> Result<(), Failed> {
+    let (folder, _) = with_a_scene("time")?;
+    let changed = "• mine.toml — Veduta";
+    fs::write(folder.0.join("mine.toml"), MINE.replace("square", "old-town"))?;
+    let mut desk = Desk::open(&folder.0, &["mine.toml"])?;
+    desk.until_title("mine.toml — Veduta")?;
+    sleep(9 * desk.beat);
+    let saved = || -> Result<toml::Table, Failed> {
+        if desk.title()? == changed {
+            desk.key("ctrl+s", "mine.toml — Veduta")?;
+        }
+        Ok(scene(&folder)?.parse()?)
+    };
+    let adds = |at: [i32; 2]| -> Result<(), Failed> {
+        let [x, y] = at.map(|c| c.to_string());
+        desk.does(&["mousemove", &x, &y])?;
+        sleep(desk.beat);
+        desk.key("y", changed)?;
+        saved().map(|_| ())
+    };
+    // Until the file says so: a busy machine may miss some of it.
+    let until = |does: &dyn Fn() -> Result<(), Failed>, step: &str| -> Result<(), Failed> {
+        for _ in 0..TRIES {
+            does()?;
+            sleep(2 * desk.beat);
+            saved()?;
+            if scene(&folder)?.contains(step) {
+                return Ok(());
+            }
+        }
+        Err(format!("there is no {step} in {}", scene(&folder)?).into())
+    };
+    let types = |at: [i32; 2], text: &str| -> Result<(), Failed> {
+        desk.clicks(at)?;
+        desk.does(&["key", "ctrl+a"])?;
+        desk.does(&["type", "--delay", "20", text])?;
+        desk.does(&["key", "Return"])
+    };
+    adds(MIDDLE)?;
+    until(&|| types(AT, "1650"), "at = \"1650\"")?;
+    adds([MIDDLE[0], MIDDLE[1] + 100])?;
+    until(
+        &|| {
+            desk.clicks(LINK)?;
+            desk.clicks(FIRST)
+        },
+        "to = \"time\"",
+    )?;
+    until(&|| types(DELAY, "10 years"), "by = \"10 years\"")?;
+    let before = saved()?;
+    until(&|| desk.drags(EARLY, [60, 0]), "[time]")?;
+    desk.does(&["mousemove", "660", "600"])?;
+    desk.key("ctrl+z", changed)?;
+    if saved()? != before {
+        return Err("the way through time is not taken back".into());
+    }
+    desk.quits()
 }

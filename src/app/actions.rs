@@ -70,7 +70,7 @@ pub enum Action {
     ToggleCost,
     /// The figure as it will be.
     TogglePreview,
-    /// Plays through time, or goes a step of it.
+    /// Plays through time, goes a step of it, says what is played, or keeps the view.
     Time(Step),
     /// Light or dark.
     ToggleTheme,
@@ -191,6 +191,9 @@ pub const ROWS: &[Row] = &[
     row(Action::Time(Step::Play), Menu::View, "Play through time, or pause", plain(Key::Space)),
     row(Action::Time(Step::Back), Menu::View, "Step back in time", plain(Key::Comma)),
     row(Action::Time(Step::On), Menu::View, "Step on in time", plain(Key::Period)),
+    row(Action::Time(Step::LoopFrom), Menu::View, "Loop from this moment", plain(Key::OpenBracket)),
+    row(Action::Time(Step::LoopUntil), Menu::View, "Loop until this moment", plain(Key::CloseBracket)),
+    row(Action::Time(Step::Key), Menu::View, "Keep the view for this moment", plain(Key::C)),
     row(Action::ToggleTheme, Menu::View, "Light or dark", None),
     row(Action::Shortcuts, Menu::Help, "Keys and mouse", plain(Key::F1)),
 ];
@@ -213,6 +216,8 @@ pub const MOUSE: &[(&str, &str)] = &[
     ("Arrows, Shift arrows", "Orbit around what the eye looks at; move along"),
     ("+ and -", "Come nearer to it, and go away"),
     ("Drag the timeline", "Go through time"),
+    ("Drag the handles of the timeline", "Say what is played, round and round; a double click: all of it"),
+    ("Drag an object that moves", "Go to the moment at which it comes where the pointer is, along its way"),
     ("Drop files", "Open them; effects (*.wgsl) are added, and read again when they change"),
 ];
 

@@ -1,6 +1,6 @@
 //! The picture in the window: it is looked at, moved around in, and its lenses have gizmos.
 
-use std::time::Instant;
+use std::{sync::Arc, time::Instant};
 
 use eframe::egui::{
     self, Align2, Color32, ColorImage, Context, CursorIcon, Key, PointerButton, Pos2, Rect, Response, Sense,
@@ -289,6 +289,11 @@ impl Window {
                 return;
             }
         }
+        let is_plain = primary && !modifiers.command && !modifiers.shift;
+        if let Some(held) = self.pick_at(rect, at).filter(|_| is_plain).and_then(|hovered| self.hold(hovered)) {
+            self.canvas.drag = Some(Drag::Along(Arc::new(held)));
+            return;
+        }
         let place = self.place_at(rect, at).unwrap_or(camera.target);
         self.canvas.drag = Some(match (primary, modifiers) {
             (true, m) if m.command => Drag::Look,
@@ -318,6 +323,11 @@ impl Window {
                 let shift = ui.input(|input| input.modifiers.shift);
                 if let Some(view) = self.view_in(rect) {
                     self.drag_grip(&grip, &view, rect, now, shift);
+                }
+            }
+            Drag::Along(held) => {
+                if let Some(view) = self.view_in(rect) {
+                    self.drag_along(&held, &view, rect, now);
                 }
             }
             Drag::Overlay { lens, off } => {
@@ -476,6 +486,10 @@ impl Window {
         if let Some((lens, icon)) = held().or_else(disc).or_else(overlay) {
             self.rolls_over = Some(lens);
             response.ctx.set_cursor_icon(if self.canvas.drag.is_some() { CursorIcon::Grabbing } else { icon });
+        } else if matches!(self.canvas.drag, Some(Drag::Along(_))) {
+            response.ctx.set_cursor_icon(CursorIcon::Grabbing);
+        } else if self.moves(self.canvas.hovered) {
+            response.ctx.set_cursor_icon(CursorIcon::Grab);
         }
     }
 

@@ -7,6 +7,7 @@ use glam::DVec3;
 
 use crate::{
     app::gizmo::places::GizmoKind,
+    city::way::Stop,
     lens::Region,
     view::{Camera, navigate::Flight},
 };
@@ -28,6 +29,17 @@ pub(super) enum Drag {
         lens: usize,
         off: Vec2,
     },
+    /// An object along its way: through time.
+    Along(Arc<Held>),
+}
+
+/// A place of an object that moves, held by the pointer.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Held {
+    /// The way of that place.
+    pub(super) way: Vec<Stop>,
+    /// How much later than the scene it shows there, microseconds.
+    pub(super) later: i64,
 }
 
 /// The state of the picture in the window.

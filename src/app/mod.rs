@@ -28,6 +28,7 @@ pub mod objects;
 mod outlines;
 pub mod properties;
 pub mod render_thread;
+mod scrub;
 mod spots;
 pub mod state;
 mod theme;

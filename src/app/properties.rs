@@ -8,7 +8,8 @@ use crate::{
     app::{
         properties::{
             edits::{Change, Drafts, Edits, To},
-            tables::{Shown, table, tables, title_of},
+            tables::{Shown, table, tables},
+            values::title_of,
         },
         state::Window,
     },
@@ -22,6 +23,7 @@ use crate::{
 };
 
 pub mod edits;
+mod handled;
 mod kinds;
 pub mod looks;
 mod tables;
@@ -36,7 +38,7 @@ const FIRST: &[&str] = &["camera", "sun", "style", "poi", "figure"];
 /// The panel.
 pub fn show(window: &mut Window, drafts: &mut Drafts, ui: &mut Ui) {
     let root = drafts.root(&window.document);
-    let mut edits = Edits { drafts, changes: Vec::new() };
+    let mut edits = Edits { scene: window.document.scene(), drafts: &mut *drafts, changes: Vec::new() };
     if let Some(index) = window.chosen.lens {
         let lens = root.get("lens").and_then(|all| all.get(index)).and_then(Value::as_table).cloned();
         if let Some(lens) = lens {
@@ -61,8 +63,7 @@ pub fn show(window: &mut Window, drafts: &mut Drafts, ui: &mut Ui) {
             section(window, &mut edits, &root, key, ui);
         }
     });
-    let Edits { drafts, changes } = edits;
-    for Change { path, to, is_held } in changes {
+    for Change { path, to, is_held } in edits.changes {
         let renamed = window.chosen.lens.filter(|index| path == format!("lens.{index}.name"));
         let data = |value: &Value| Some(Data::from(value));
         let done = match (&to, renamed) {

@@ -1,24 +1,45 @@
 //! The timeline: which moment the scene shows, what comes and goes when, and play.
 
-use std::sync::Arc;
-
-use eframe::egui::{self, Align2, FontId, Key, Rect, Sense, Stroke, Ui, pos2, vec2};
+use eframe::egui::{self, Key, Rect, Sense, Ui, vec2};
 
 use crate::{
-    app::state::Window,
-    city::{
-        CityModel,
-        lifetime::{Dating, Lifetimes},
+    app::{
+        state::Window,
+        timeline::{
+            known::{Known, Line},
+            paint::Sign,
+        },
     },
-    figure::moments::label,
-    scene::{Command, Scene},
-    time::{Granularity, Interval, Moment, Span, Unit},
+    scene::{Animation, Command, Scene},
+    time::{Interval, Moment, SECOND, Span},
 };
+
+mod known;
+mod paint;
 
 /// How long playing takes from one end to the other, seconds.
 const PLAY_S: f64 = 20.0;
-/// How fast it may be played, times that.
-const SPEEDS: [(f64, &str); 5] = [(0.25, "¼×"), (0.5, "½×"), (1.0, "1×"), (2.0, "2×"), (4.0, "4×")];
+
+/// How fast it is played.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Speed {
+    /// All of the line in [`PLAY_S`], times that.
+    Whole(f64),
+    /// As the clock goes, times that.
+    Clock(f64),
+}
+
+/// How fast it may be played; by the clock what moves by timetables.
+const SPEEDS: [(Speed, &str); 8] = [
+    (Speed::Whole(0.25), "¼×"),
+    (Speed::Whole(0.5), "½×"),
+    (Speed::Whole(1.0), "1×"),
+    (Speed::Whole(2.0), "2×"),
+    (Speed::Whole(4.0), "4×"),
+    (Speed::Clock(1.0), "real time"),
+    (Speed::Clock(10.0), "10× real time"),
+    (Speed::Clock(60.0), "60× real time"),
+];
 /// Columns of the histogram, at most; each at least so many points wide.
 const MOST_COLUMNS: usize = 200;
 const COLUMN_PT: f32 = 4.0;
@@ -27,9 +48,13 @@ const COLUMN_PT: f32 = 4.0;
 #[derive(Debug)]
 pub struct Timeline {
     known: Option<Known>,
-    /// Whether it plays, and how fast, times the whole in [`PLAY_S`].
+    /// Which line is chosen, where there are several.
+    line: Option<Line>,
+    /// Whether it plays.
     pub plays: bool,
-    speed: f64,
+    speed: Speed,
+    /// What is played round and round; `None`: all of the line, once.
+    pub range: Option<[Moment; 2]>,
     /// The moment while it is dragged or played, microseconds: finer than what the scene shows.
     at: Option<i64>,
     /// What is typed as a moment.
@@ -38,63 +63,36 @@ pub struct Timeline {
 
 impl Default for Timeline {
     fn default() -> Self {
-        Self { known: None, plays: false, speed: 1.0, at: None, draft: None }
+        Self { known: None, line: None, plays: false, speed: Speed::Whole(1.0), range: None, at: None, draft: None }
     }
 }
 
-/// When the objects of a city come and go.
-#[derive(Debug)]
-struct Known {
-    model: Arc<CityModel>,
-    dating: Dating,
-    /// The moments at which something comes or goes, ascending; parts come and go with their buildings.
-    events: Vec<Moment>,
-    granularity: Granularity,
+/// The line that is shown.
+#[derive(Clone, Copy, Debug)]
+struct Shown {
+    line: Line,
+    /// Its first and its last moment.
+    span: [Moment; 2],
+    /// Those of what is played.
+    range: [Moment; 2],
+    /// Where it is in the window.
+    rect: Rect,
 }
 
-impl Known {
-    fn new(model: &Arc<CityModel>, dating: &Dating) -> Self {
-        let found = Lifetimes::new(model, dating).unwrap_or_default();
-        let of_top = found.of.iter().zip(&model.objects).filter(|(_, object)| object.parents.is_empty());
-        let mut events: Vec<Moment> =
-            of_top.flat_map(|(lifetime, _)| [lifetime.begin, lifetime.end]).flatten().collect();
-        events.sort_unstable();
-        Self {
-            model: model.clone(),
-            dating: dating.clone(),
-            events,
-            granularity: found.granularity.unwrap_or(Granularity::Year),
-        }
+impl Shown {
+    /// How far on the line a moment is, points from the left of the window.
+    fn x(&self, at: Moment) -> f32 {
+        let [first, last] = self.span;
+        let share = ((at - first) as f64 / (last - first).max(1) as f64).clamp(0.0, 1.0);
+        self.rect.left() + share as f32 * self.rect.width()
     }
 
-    /// The first and the last moment of the line: all that comes and goes, and one unit more at both ends.
-    fn span(&self) -> Option<[Moment; 2]> {
-        let (first, last) = (*self.events.first()?, *self.events.last()?);
-        let unit = self.unit();
-        Some([first.shifted(Span::of_micros(-1)).floored(unit), last.shifted(unit.span()).ceiled(unit)])
-    }
-
-    /// What a step is: as finely as dates say it.
-    fn unit(&self) -> Unit {
-        match self.granularity {
-            Granularity::Year => Unit::Months(12),
-            Granularity::Month => Unit::Months(1),
-            Granularity::Day => Unit::Micros(crate::time::DAY),
-            Granularity::Minute => Unit::Micros(crate::time::MINUTE),
-            _ => Unit::Micros(crate::time::SECOND),
-        }
-    }
-
-    /// How many events are in each of so many columns of the line.
-    fn columns(&self, [first, last]: [Moment; 2], count: usize) -> Vec<u32> {
-        let mut columns = vec![0; count];
-        for event in &self.events {
-            let share = i128::from(*event - first) * count as i128 / i128::from((last - first).max(1));
-            if let Some(column) = columns.get_mut(share.max(0) as usize) {
-                *column += 1;
-            }
-        }
-        columns
+    /// The moment of a place.
+    fn moment(&self, x: f32) -> Moment {
+        let [first, last] = self.span;
+        let share = f64::from(((x - self.rect.left()) / self.rect.width().max(1.0)).clamp(0.0, 1.0));
+        let micros = first.micros() + (share * (last - first) as f64).round() as i64;
+        Moment::from_micros(micros).unwrap_or(first)
     }
 }
 
@@ -107,29 +105,75 @@ pub enum Step {
     Back,
     /// A unit on.
     On,
+    /// What is played begins now.
+    LoopFrom,
+    /// What is played ends now.
+    LoopUntil,
+    /// The present view is a camera key of the present moment.
+    Key,
 }
 
 impl Window {
     /// Whether its city has a timeline.
     pub fn has_timeline(&self) -> bool {
-        self.timeline.known.as_ref().is_some_and(|known| !known.events.is_empty())
+        self.timeline.known.as_ref().is_some_and(|known| known.lines().next().is_some())
+    }
+
+    /// The line that is shown, before it has a place.
+    fn shown_line(&self) -> Option<Shown> {
+        let known = self.timeline.known.as_ref()?;
+        let line = known.line(self.timeline.line, self.document.scene().moment)?;
+        let span = known.span(line)?;
+        let within = |[from, until]: [Moment; 2]| {
+            let range = [from.max(span[0]), until.min(span[1])];
+            (range[0] < range[1]).then_some(range)
+        };
+        let range = self.timeline.range.and_then(within).unwrap_or(span);
+        Some(Shown { line, span, range, rect: Rect::ZERO })
     }
 
     /// Does what a key says.
     pub(super) fn step_time(&mut self, step: Step) {
-        let Some(known) = &self.timeline.known else { return };
-        let (Some(span), unit) = (known.span(), known.unit()) else { return };
+        let Some(shown) = self.shown_line() else { return };
+        let Some(unit) = self.timeline.known.as_ref().map(|known| known.unit(shown.line)) else { return };
+        let (span, [from, until]) = (shown.span, shown.range);
         let now = self.document.scene().moment.unwrap_or(span[0]);
         match step {
             Step::Play => {
                 self.timeline.plays ^= true;
                 // From the end it begins again.
-                let is_over = self.document.scene().moment.is_none_or(|at| at >= span[1]);
-                let start = if is_over { span[0] } else { now };
+                let is_within = self.document.scene().moment.is_some_and(|at| (from..until).contains(&at));
+                let start = if is_within { now } else { from };
                 self.timeline.at = self.timeline.plays.then(|| start.micros());
             }
             Step::Back => self.show_moment(now.shifted(Span::of_micros(-1)).floored(unit), span),
             Step::On => self.show_moment(now.shifted(Span::of_micros(1)).ceiled(unit), span),
+            Step::LoopFrom => self.loop_between(&shown, [now, until]),
+            Step::LoopUntil => self.loop_between(&shown, [from, now]),
+            Step::Key => self.keep_view(&shown),
+        }
+    }
+
+    /// What is played from now on; all of the line is no part of it, and ends that meet leave it as it is.
+    fn loop_between(&mut self, shown: &Shown, [from, until]: [Moment; 2]) {
+        let [first, last] = shown.span;
+        let range = [from.clamp(first, last), until.clamp(first, last)];
+        if range[0] < range[1] {
+            self.timeline.range = Some(range).filter(|range| *range != shown.span);
+        }
+    }
+
+    /// Makes the present view a camera key of the present moment.
+    fn keep_view(&mut self, shown: &Shown) {
+        let scene = self.document.scene();
+        let (Some(camera), at) = (scene.camera, scene.moment.unwrap_or(shown.span[0])) else { return };
+        match Animation::with_key(scene.animation.as_ref(), &camera, at, shown.range) {
+            Ok(animation) => {
+                let told = self.timeline.known.as_ref().map(|known| known.told(shown.line, at)).unwrap_or_default();
+                self.document.edit(format!("camera key at {told}"), |scene| scene.animation = Some(animation));
+                self.say(format!("The view is the camera's key at {told}."));
+            }
+            Err(error) => self.fail(error),
         }
     }
 
@@ -144,30 +188,30 @@ impl Window {
     /// The panel below the canvas.
     pub(super) fn show_timeline(&mut self, ui: &mut Ui) {
         self.know_time();
-        let Some(span) = self.timeline.known.as_ref().and_then(Known::span) else { return };
+        let Some(shown) = self.shown_line() else { return };
         egui::Panel::bottom("timeline").show(ui, |ui| {
             ui.horizontal(|ui| {
-                self.buttons(ui);
+                self.buttons(ui, &shown);
                 self.typed(ui);
-                self.line(ui, span);
+                self.line(ui, shown);
             });
         });
         if self.timeline.plays {
-            self.play(ui, span);
+            self.play(ui, &shown);
         }
     }
 
     fn know_time(&mut self) {
         let Some(city) = &self.city else { return };
         let dating = &self.document.scene().city.dating;
-        let is_known = |known: &Known| Arc::ptr_eq(&known.model, &city.model) && known.dating == *dating;
-        if !self.timeline.known.as_ref().is_some_and(is_known) {
+        if !self.timeline.known.as_ref().is_some_and(|known| known.is_of(&city.model, dating)) {
             self.timeline.known = Some(Known::new(&city.model, dating));
             (self.timeline.plays, self.timeline.at) = (false, None);
+            (self.timeline.line, self.timeline.range) = (None, None);
         }
     }
 
-    fn buttons(&mut self, ui: &mut Ui) {
+    fn buttons(&mut self, ui: &mut Ui, line: &Shown) {
         let (play, name) = match self.timeline.plays {
             true => (Sign::Pause, "Pause"),
             false => (Sign::Play, "Play through time"),
@@ -176,6 +220,7 @@ impl Window {
             (Sign::Back, "Step back in time", ",", Step::Back),
             (play, name, "Space", Step::Play),
             (Sign::On, "Step on in time", ".", Step::On),
+            (Sign::Key, "Keep the view for this moment", "C", Step::Key),
         ];
         for (sign, name, key, step) in all {
             if sign.button(ui, name, key) {
@@ -185,11 +230,20 @@ impl Window {
         let shown = SPEEDS.iter().find(|(speed, _)| *speed == self.timeline.speed).map_or("1×", |(_, name)| *name);
         let chosen = egui::ComboBox::from_id_salt("speed of time").selected_text(shown).width(48.0);
         let chosen = chosen.show_ui(ui, |ui| {
-            for (speed, name) in SPEEDS {
+            let has_clock = line.line == Line::Timetables;
+            for (speed, name) in SPEEDS.into_iter().filter(|(speed, _)| has_clock || matches!(speed, Speed::Whole(_))) {
                 ui.selectable_value(&mut self.timeline.speed, speed, name);
             }
         });
         chosen.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::ComboBox, true, "Speed of time"));
+        if self.timeline.known.as_ref().is_some_and(|known| known.lines().count() > 1) {
+            let mut is_of_moves = line.line == Line::Timetables;
+            let hint = "The line is of the timetables by which objects move, not of what comes and goes";
+            if ui.checkbox(&mut is_of_moves, "Timetables").on_hover_text(hint).changed() {
+                self.timeline.line = Some(if is_of_moves { Line::Timetables } else { Line::Dates });
+                self.timeline.range = None;
+            }
+        }
     }
 
     /// The moment, to be typed; nothing shows all.
@@ -227,26 +281,31 @@ impl Window {
         }
     }
 
-    /// The line with its histogram; a drag scrubs.
-    fn line(&mut self, ui: &mut Ui, span: [Moment; 2]) {
+    /// The line with its histogram; a drag scrubs. Its handles stand beside what is played.
+    fn line(&mut self, ui: &mut Ui, mut shown: Shown) {
         let size = vec2(ui.available_width().max(80.0), 36.0);
-        let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        let (whole, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Timeline"));
+        shown.rect = whole.shrink2(vec2(paint::HANDLE_PT, 0.0));
+        let rect = shown.rect;
         let Some(known) = &self.timeline.known else { return };
-        let (granularity, unit) = (known.granularity, known.unit());
+        let told = |at: Moment| known.told(shown.line, at);
+        let dragged = known.dragged(shown.line);
+        let now = self.document.scene().moment.map(told).unwrap_or_default();
         let count = ((rect.width() / COLUMN_PT) as usize).clamp(1, MOST_COLUMNS);
-        paint_columns(ui, rect, &known.columns(span, count));
-        let total = (span[1] - span[0]).max(1);
-        let share = |at: Moment| ((at - span[0]) as f64 / total as f64).clamp(0.0, 1.0) as f32;
-        paint_ends(ui, rect, span.map(|at| label(at, Some(granularity))));
+        paint::columns(ui, rect, &known.columns(shown.span, count));
+        paint::ends(ui, rect, shown.span.map(told));
+        self.handles(ui, &shown, whole);
+        if let Some(animation) = &self.document.scene().animation {
+            let moments = animation.camera.iter().filter_map(|key| animation.moment_of(key.at));
+            let is_there = |at: &Moment| (shown.span[0]..=shown.span[1]).contains(at);
+            paint::keys(ui, whole, moments.filter(is_there).map(|at| shown.x(at)));
+        }
         if let Some(at) = self.document.scene().moment {
-            let x = rect.left() + share(at) * rect.width();
-            paint_cursor(ui, rect, x, &label(at, Some(granularity)));
+            paint::cursor(ui, rect, shown.x(at), &now);
         }
         if let Some(pointer) = response.interact_pointer_pos() {
-            let share = f64::from(((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0));
-            let micros = span[0].micros() + (share * total as f64).round() as i64;
-            let at = Moment::from_micros(micros).unwrap_or(span[0]).floored(unit).clamp(span[0], span[1]);
+            let at = shown.moment(pointer.x).floored(dragged).clamp(shown.span[0], shown.span[1]);
             self.timeline.plays = false;
             if self.document.scene().moment != Some(at) {
                 let scene = Scene { moment: Some(at), ..self.document.scene().clone() };
@@ -255,95 +314,56 @@ impl Window {
         }
     }
 
-    /// Goes on in time.
-    fn play(&mut self, ui: &Ui, span: [Moment; 2]) {
-        let seconds = f64::from(ui.input(|input| input.stable_dt).min(0.5));
-        let unit = self.timeline.known.as_ref().map_or(Unit::Months(12), Known::unit);
-        let total = (span[1] - span[0]) as f64;
-        let before = self.timeline.at.unwrap_or(span[0].micros());
-        let next = before.saturating_add((total * seconds * self.timeline.speed / PLAY_S) as i64);
-        self.timeline.at = Some(next);
-        let at = Moment::from_micros(next).unwrap_or(span[1]).min(span[1]);
-        self.timeline.plays = at < span[1];
-        self.show_moment(at.floored(unit), span);
-        ui.ctx().request_repaint();
-    }
-}
-
-/// What is on a button: drawn, for fonts lack it.
-#[derive(Clone, Copy)]
-enum Sign {
-    Back,
-    Play,
-    Pause,
-    On,
-}
-
-impl Sign {
-    /// A button with it; whether it was clicked.
-    fn button(self, ui: &mut Ui, name: &str, key: &str) -> bool {
-        let button = ui.add(egui::Button::new("").min_size(vec2(26.0, 22.0))).on_hover_text(format!("{name} ({key})"));
-        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
-        let color = ui.style().interact(&button).fg_stroke.color;
-        let middle = button.rect.center();
-        let painter = ui.painter();
-        // Half as wide as it is high, its middle so far aside; turned to the left by a minus.
-        let triangle = |aside: f32, turn: f32| {
-            let at = |x: f32, y: f32| middle + vec2(aside + turn * x, y);
-            let points = vec![at(-3.0, -5.0), at(4.0, 0.0), at(-3.0, 5.0)];
-            painter.add(egui::Shape::convex_polygon(points, color, Stroke::NONE));
-        };
-        let bar = |aside: f32| {
-            painter.rect_filled(Rect::from_center_size(middle + vec2(aside, 0.0), vec2(2.5, 10.0)), 0.0, color);
-        };
-        match self {
-            Self::Play => triangle(0.0, 1.0),
-            Self::Pause => [-3.0, 3.0].into_iter().for_each(bar),
-            Self::Back => {
-                triangle(1.0, -1.0);
-                bar(-5.0);
-            }
-            Self::On => {
-                triangle(-1.0, 1.0);
-                bar(5.0);
+    /// The handles of what is played: dragged they go, a double click takes them back to the ends.
+    fn handles(&mut self, ui: &mut Ui, shown: &Shown, whole: Rect) {
+        let [from, until] = shown.range;
+        let unit = self.timeline.known.as_ref().map(|known| known.dragged(shown.line));
+        for (end, name) in [(0, "Loop from"), (1, "Loop until")] {
+            let x = shown.x(shown.range[end]);
+            let beside = if end == 0 { x - paint::HANDLE_PT..=x } else { x..=x + paint::HANDLE_PT };
+            let grip = Rect::from_x_y_ranges(beside, whole.y_range());
+            let response = ui.interact(grip, ui.scope_id().with(name), Sense::click_and_drag());
+            response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, name));
+            let response =
+                response.on_hover_text(format!("{name} here when it plays; a double click: all of the line"));
+            let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
+            if response.double_clicked() {
+                self.timeline.range = None;
+            } else if let (true, Some(pointer), Some(unit)) =
+                (response.drag_delta().x != 0.0, response.interact_pointer_pos(), unit)
+            {
+                // By its middle.
+                let aside = if end == 0 { 0.5 } else { -0.5 } * paint::HANDLE_PT;
+                let at = shown.moment(pointer.x + aside);
+                // To full units, but for the ends of the line.
+                let at = if at <= shown.span[0] || at >= shown.span[1] { at } else { at.floored(unit) };
+                let range = if end == 0 { [at, until] } else { [from, at] };
+                self.loop_between(shown, range);
             }
         }
-        button.clicked()
+        paint::range(ui, shown.rect, shown.range.map(|at| shown.x(at)), self.timeline.range.is_some());
     }
-}
 
-fn paint_columns(ui: &Ui, rect: Rect, columns: &[u32]) {
-    let most = columns.iter().copied().max().unwrap_or(1).max(1);
-    let painter = ui.painter_at(rect);
-    let visuals = ui.visuals();
-    painter.rect_filled(rect, 4.0, visuals.extreme_bg_color);
-    let (width, height) = (rect.width() / columns.len() as f32, rect.height() - 14.0);
-    for (i, count) in columns.iter().enumerate().filter(|(_, count)| **count > 0) {
-        // Few are seen beside many.
-        let tall = (0.15 + 0.85 * (*count as f32 / most as f32).sqrt()) * height;
-        let left = rect.left() + i as f32 * width;
-        let bottom = rect.bottom() - 13.0;
-        let bar = Rect::from_min_max(pos2(left + 0.5, bottom - tall), pos2(left + width - 0.5, bottom));
-        painter.rect_filled(bar, 0.0, visuals.widgets.inactive.fg_stroke.color.gamma_multiply(0.55));
+    /// Goes on in time; round and round where a part of the line is played.
+    fn play(&mut self, ui: &Ui, shown: &Shown) {
+        let seconds = f64::from(ui.input(|input| input.stable_dt).min(0.5));
+        let Some(played) = self.timeline.known.as_ref().map(|known| known.played(shown.line)) else { return };
+        let [from, until] = shown.range;
+        let per_second = match self.timeline.speed {
+            Speed::Whole(times) => times * (shown.span[1] - shown.span[0]) as f64 / PLAY_S,
+            Speed::Clock(times) => times * SECOND as f64,
+        };
+        let before = self.timeline.at.unwrap_or(from.micros());
+        let next = before.saturating_add((seconds * per_second) as i64);
+        let next = match self.timeline.range {
+            Some(_) => from.micros() + (next - from.micros()).rem_euclid((until - from).max(1)),
+            None => next,
+        };
+        self.timeline.at = Some(next);
+        let at = Moment::from_micros(next).unwrap_or(until).clamp(from, until);
+        self.timeline.plays = at < until;
+        // A full unit may begin before what is played.
+        self.show_moment(at.floored(played).max(from), shown.span);
+        ui.ctx().request_repaint();
     }
-}
-
-fn paint_ends(ui: &Ui, rect: Rect, [first, last]: [String; 2]) {
-    let (font, color) = (FontId::proportional(10.0), ui.visuals().weak_text_color());
-    let painter = ui.painter_at(rect);
-    painter.text(rect.left_bottom() + vec2(4.0, -1.0), Align2::LEFT_BOTTOM, first, font.clone(), color);
-    painter.text(rect.right_bottom() + vec2(-4.0, -1.0), Align2::RIGHT_BOTTOM, last, font, color);
-}
-
-fn paint_cursor(ui: &Ui, rect: Rect, x: f32, text: &str) {
-    let color = ui.visuals().selection.stroke.color;
-    let painter = ui.painter_at(rect);
-    painter.vline(x, rect.y_range(), Stroke::new(2.0, color));
-    let is_right = x > rect.center().x;
-    let (align, aside) = if is_right { (Align2::RIGHT_TOP, -5.0) } else { (Align2::LEFT_TOP, 5.0) };
-    let place = pos2(x + aside, rect.top() + 1.0);
-    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(12.0), color);
-    let box_ = align.anchor_size(place, galley.size()).expand(2.0);
-    painter.rect_filled(box_, 3.0, ui.visuals().extreme_bg_color.gamma_multiply(0.9));
-    painter.text(place, align, text, FontId::proportional(12.0), color);
 }

@@ -37,6 +37,7 @@ pub mod texture;
 pub mod timetable;
 pub mod validate;
 pub mod warning;
+pub mod way;
 
 pub use model::*;
 pub use strings::Strings;

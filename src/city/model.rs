@@ -576,6 +576,19 @@ impl CityModel {
         roots
     }
 
+    /// What moves an object, itself or with what it is part of: its place in [`Self::moves`].
+    pub fn mover(&self, object: u32) -> Option<usize> {
+        let mut at = object;
+        // No family is deeper than there are objects.
+        for _ in 0..self.objects.len() {
+            if let Ok(i) = self.moves.binary_search_by_key(&at, |of| of.object) {
+                return Some(i);
+            }
+            at = *self.objects[at as usize].parents.first()?;
+        }
+        None
+    }
+
     /// An object's own attributes.
     pub fn attributes_of(&self, object: u32) -> &[Attribute] {
         let range = &self.objects[object as usize].attributes;

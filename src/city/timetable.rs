@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde::Serialize;
 
 use crate::time::Moment;
@@ -42,12 +42,28 @@ pub struct Pose {
     pub scale: f64,
 }
 
+impl Pose {
+    /// Where a point of the file comes to stand, metres.
+    pub fn place(&self, point: DVec3) -> DVec3 {
+        self.to + self.scale * (DQuat::from_rotation_z(self.turn) * (point - self.from))
+    }
+
+    /// The point of the file that stands at a place, metres.
+    pub fn in_file(&self, place: DVec3) -> DVec3 {
+        self.from + DQuat::from_rotation_z(-self.turn) * (place - self.to) / self.scale
+    }
+}
+
 impl Keyframes {
     /// How the object stands at a moment: between two keyframes on the straight line from one to the other, at one speed; before the first as
     /// there, after the last as there. At none as its file has it.
     pub fn pose(&self, at: Option<Moment>) -> Pose {
+        self.pose_of(&at.map_or(self.keys[0], |at| self.key_at(at)))
+    }
+
+    /// How the object stands at a keyframe.
+    pub fn pose_of(&self, now: &Keyframe) -> Pose {
         let first = &self.keys[0];
-        let now = at.map_or(*first, |at| self.key_at(at));
         Pose { from: first.place, to: now.place, turn: now.yaw - first.yaw, scale: now.scale / first.scale }
     }
 

@@ -228,7 +228,7 @@ pub fn color_of(value: &Parameter) -> Option<Srgb> {
 impl EffectUse {
     /// A use of an effect with every parameter at its default, on what is inside.
     pub fn new(effect: &str) -> Self {
-        let class = crate::lens::Class::default();
+        let class = crate::lens::class::Class::default();
         Self { effect: effect.into(), class, blend: None, weight: None, parameters: BTreeMap::new() }
     }
 

@@ -192,10 +192,14 @@ impl Operator {
 }
 
 const SET: &str = "set";
+pub(super) const SHIFT: &str = "shift";
 const LOOP: &str = "loop";
 const AGGREGATE: &str = "aggregate";
 const GHOST: &str = "ghost";
-const LINK: &str = "link";
+/// The operator that shows what another lens shows, and its parameters: that lens' name, and the delay.
+pub(super) const LINK: &str = "link";
+pub(super) const LINKED: &str = "to";
+pub(super) const DELAY: &str = "by";
 
 /// A moment that comes again and again: `from + (clock − start) · rate mod (until − from)`.
 struct Loop {
@@ -274,7 +278,7 @@ fn linked_on<'a>(steps: &[Handled], lenses: &'a [Lens], way: &mut Vec<&'a str>) 
             all.push(step.clone());
             continue;
         }
-        let Some(Parameter::Text(to)) = step.parameters.get("to") else { return Err("to is missing".to_owned()) };
+        let Some(Parameter::Text(to)) = step.parameters.get(LINKED) else { return Err("to is missing".to_owned()) };
         let other = lenses.iter().find(|lens| lens.name == *to).ok_or_else(|| {
             let hint = did_you_mean(to, lenses.iter().map(|lens| lens.name.as_str()));
             format!("to: there is no lens \"{to}\"{hint}")
@@ -287,12 +291,17 @@ fn linked_on<'a>(steps: &[Handled], lenses: &'a [Lens], way: &mut Vec<&'a str>) 
         way.push(&other.name);
         all.extend(linked_on(&other.time, lenses, way)?);
         way.pop();
-        if let Some(by) = step.parameters.get("by") {
-            let by = ("by".to_owned(), by.clone());
-            all.push(Handled { handler: "shift".to_owned(), parameters: [by].into() });
-        }
+        all.extend(delayed(step));
     }
     Ok(all)
+}
+
+/// The delay of a link as a step of its own; `None`: there is none.
+pub(super) fn delayed(link: &Handled) -> Option<Handled> {
+    let by = link.parameters.get(DELAY)?;
+    let is_none = matches!(by, Parameter::Text(by) if Span::parse(by).is_ok_and(Span::is_none));
+    let parameters = [(DELAY.to_owned(), by.clone())].into();
+    (!is_none).then(|| Handled { handler: SHIFT.to_owned(), parameters })
 }
 
 /// Whether a step makes one moment of one, with nothing beside it that is there by halves.
@@ -338,7 +347,7 @@ impl Exact {
                 Self::Set(Interval::parse(&at)?.begin.ok_or_else(|| format!("\"{at}\" has no beginning"))?)
             }
             // Of a link its delay: the operators of the other lens stand before it ([`linked`]).
-            "shift" | LINK => Self::Shift(span("by")?),
+            SHIFT | LINK => Self::Shift(span("by")?),
             "ceil" => Self::Ceil(unit()?, span("by")?),
             "floor" => Self::Floor(unit()?, span("by")?),
             AGGREGATE => {

@@ -18,6 +18,7 @@ pub mod epoch;
 pub mod handled;
 pub mod intersection;
 pub mod kind;
+pub mod links;
 pub mod measures;
 pub mod nearest;
 pub mod occluders;

@@ -4,7 +4,6 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::{DQuat, DVec3};
-use rustc_hash::FxHashMap;
 
 use crate::{
     city::{CityModel, lifetime::Lifetimes, timetable::Pose},
@@ -54,11 +53,10 @@ impl MovingObjects {
         if model.moves.is_empty() {
             return (Self::default(), geometries.to_vec());
         }
-        let moves: FxHashMap<u32, usize> = model.moves.iter().zip(0..).map(|(of, i)| (of.object, i)).collect();
         let mut own: Vec<Vec<u32>> = vec![Vec::new(); model.moves.len()];
         let mut still = Vec::new();
         for &geometry in geometries {
-            match moved_with(model, model.geometries[geometry as usize].object, &moves) {
+            match model.mover(model.geometries[geometry as usize].object) {
                 Some(i) => own[i].push(geometry),
                 None => still.push(geometry),
             }
@@ -154,19 +152,6 @@ impl MovingObjects {
         }
         if found.moments.len() > MOST_TURNS { Err(too_many()) } else { Ok(found) }
     }
-}
-
-/// Which of the objects that move an object moves with: itself, or what it is a part of.
-fn moved_with(model: &CityModel, object: u32, moves: &FxHashMap<u32, usize>) -> Option<usize> {
-    let mut at = object;
-    // No family is deeper than there are objects.
-    for _ in 0..model.objects.len() {
-        if let Some(&i) = moves.get(&at) {
-            return Some(i);
-        }
-        at = *model.objects[at as usize].parents.first()?;
-    }
-    None
 }
 
 fn placement(pose: &Pose) -> Placement {

@@ -4,7 +4,10 @@ use glam::DVec3;
 
 use crate::{
     time::{Moment, Span},
-    view::path::{CameraKey, CameraPath, Curve, Path, PathError, Speed},
+    view::{
+        Camera,
+        path::{CameraKey, CameraPath, Curve, Path, PathError, Speed},
+    },
 };
 
 /// Frames of one animation at most.
@@ -58,7 +61,74 @@ pub enum Numbers {
     List(Vec<Numbers>),
 }
 
+/// How long an animation through moments takes where nothing else says it, seconds, and how many pictures it has in a second.
+pub const MOMENTS_S: f64 = 10.0;
+/// Pictures per second where none are given.
+pub const FPS: f64 = 30.0;
+
 impl Animation {
+    /// How long it takes from the first frame to the last one, seconds.
+    fn duration_s(&self) -> f64 {
+        f64::from(self.frames.saturating_sub(1)) / self.fps
+    }
+
+    /// The moment of the calendar that shows at a second; `None`: the scene's.
+    pub fn moment_of(&self, seconds: f64) -> Option<Moment> {
+        let [first, last] = self.moments?;
+        let gone = (last - first) as f64 * seconds / self.duration_s();
+        gone.is_finite().then(|| first.shifted(Span::of_micros(gone.round() as i64)))
+    }
+
+    /// An animation with a camera key at a moment, in the place of one that is there; a new one goes through the moments of `span`. A moment before its
+    /// first or after its last one makes it longer: it goes on at the pace that it has.
+    ///
+    /// # Errors
+    /// It would be too long, or the key makes no path with the others: what is wrong.
+    pub fn with_key(before: Option<&Self>, camera: &Camera, at: Moment, span: [Moment; 2]) -> Result<Self, String> {
+        let mut made = before.cloned().unwrap_or(Self {
+            frames: 0,
+            fps: FPS,
+            speed: Speed::Keys,
+            camera: Vec::new(),
+            changes: Vec::new(),
+            moments: None,
+        });
+        if made.frames < 2 {
+            made.frames = (MOMENTS_S * made.fps).round().max(1.0) as u32 + 1;
+        }
+        let [first, last] = made.moments.filter(|[first, last]| first < last).unwrap_or(span);
+        let per_moment = made.duration_s() / (last - first).max(1) as f64;
+        let [early, late] = [first - at, at - last].map(|by| by.max(0) as f64 * per_moment);
+        let frames = ((made.duration_s() + early + late) * made.fps).round() + 1.0;
+        if frames > f64::from(MOST_FRAMES) {
+            return Err(format!(
+                "The animation goes from {} to {}: up to {} it would have {frames} frames; at most {MOST_FRAMES} would be right.",
+                first.written(),
+                last.written(),
+                at.written()
+            ));
+        }
+        (made.frames, made.moments) = (frames as u32, Some([first.min(at), last.max(at)]));
+        let times = made.camera.iter_mut().map(|key| &mut key.at);
+        let of_changes = made.changes.iter_mut().flat_map(|change| &mut change.keys).map(|key| &mut key.at);
+        times.chain(of_changes).for_each(|time| *time += early);
+        let seconds = (at - first).max(0) as f64 * per_moment;
+        let key = CameraKey {
+            at: (seconds * 1e6).round() / 1e6,
+            eye: camera.eye,
+            target: camera.target,
+            up: camera.up,
+            projection: camera.projection,
+        };
+        // Two in one frame are one.
+        made.camera.retain(|own| (own.at - key.at).abs() * made.fps >= 0.5);
+        let place = made.camera.partition_point(|own| own.at < key.at);
+        made.camera.insert(place, key);
+        CameraPath::new(&made.camera, made.speed, None)
+            .map_err(|error| format!("The view is no camera key: {error}"))?;
+        Ok(made)
+    }
+
     /// The moment of the calendar that a frame shows, in whole microseconds; `None`: the scene's.
     pub fn moment(&self, frame: u32) -> Option<Moment> {
         let [first, last] = self.moments?;
@@ -167,6 +237,7 @@ impl Animation {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view::Projection;
 
     fn list(numbers: &[f64]) -> Numbers {
         Numbers::List(numbers.iter().map(|n| Numbers::One(*n)).collect())
@@ -197,5 +268,38 @@ mod tests {
         let out = |is_place| Track::new(&change(is_place, &corner)).unwrap().at(1.5).all()[0];
         assert_eq!(out(false), 10.0);
         assert!(out(true) > 10.1, "a curve swings out: {}", out(true));
+    }
+
+    #[test]
+    fn views_become_camera_keys_of_their_moments() {
+        let year = |year: i64| Moment::of_year(year).unwrap();
+        let camera = |x: f64| Camera::looking(DVec3::new(x, -50.0, 20.0), DVec3::ZERO, 0.8);
+        let span = [year(1900), year(2000)];
+        let first = Animation::with_key(None, &camera(0.0), year(1900), span).unwrap();
+        assert_eq!((first.frames, first.fps, first.moments), (301, 30.0, Some(span)));
+        let key = |animation: &Animation| animation.camera.iter().map(|key| key.at).collect::<Vec<_>>();
+        assert_eq!(key(&first), [0.0]);
+        // A century takes ten seconds; days of leap years are not quite even.
+        let halfway = Animation::with_key(Some(&first), &camera(9.0), year(1950), span).unwrap();
+        assert!((key(&halfway)[1] - 5.0).abs() < 1e-3);
+        let day = |at: Option<Moment>, year: Moment| (at.unwrap() - year).abs() < crate::time::DAY;
+        assert!(day(halfway.moment_of(key(&halfway)[1]), year(1950)));
+        // Another view of that moment comes in its place.
+        let again = Animation::with_key(Some(&halfway), &camera(30.0), year(1950), span).unwrap();
+        assert_eq!((again.camera.len(), again.camera[1].eye.x), (2, 30.0));
+        // Beyond its ends it goes on at the same pace.
+        let longer = Animation::with_key(Some(&again), &camera(-9.0), year(1850), span).unwrap();
+        assert_eq!((longer.frames, longer.moments), (451, Some([year(1850), year(2000)])));
+        for (at, (own, then)) in key(&longer).into_iter().zip([(0.0, 1850), (5.0, 1900), (10.0, 1950)]) {
+            assert!((at - own).abs() < 1e-2 && day(longer.moment_of(at), year(then)), "{at}");
+        }
+        let far = Animation::with_key(Some(&longer), &camera(1.0), year(2050), span).unwrap();
+        assert_eq!((far.frames, far.moments), (601, Some([year(1850), year(2050)])));
+        // What makes no animation is told.
+        let hours = [year(1900), year(1900).shifted(Span::of_micros(crate::time::HOUR))];
+        let short = Animation::with_key(None, &camera(0.0), hours[0], hours).unwrap();
+        assert!(Animation::with_key(Some(&short), &camera(1.0), year(2000), hours).unwrap_err().contains("at most"));
+        let flat = Camera { projection: Projection::Orthographic { height_m: 90.0 }, ..camera(3.0) };
+        assert!(Animation::with_key(Some(&first), &flat, year(1950), span).unwrap_err().contains("projection"));
     }
 }

@@ -5,6 +5,7 @@ use crate::{
         BestView, Handled, Lens,
         best_view::{Depiction, LocalView},
         epoch::{linked, makes_one_moment, moment_after, set_to},
+        links,
     },
     scene::model::Scene,
     time::Moment,
@@ -63,12 +64,38 @@ impl Command {
         Self::of(format!("add lens {}", lens.name), scene, |s| s.lenses.push(lens))
     }
 
-    /// Takes a lens away; `None` where there is none at `index`.
+    /// Takes a lens away, with what shows it: its overlays, and its place in views. What is linked to it in time shows what it showed: the steps of
+    /// the lens, and the delay, come in the place of the link. `None` where there is none at `index`.
     pub fn remove_lens(scene: &Scene, index: usize) -> Option<Self> {
-        let lens = scene.lenses.get(index)?;
-        Some(Self::of(format!("remove lens {}", lens.name), scene, |s| {
+        let Lens { name, time, .. } = scene.lenses.get(index)?;
+        Some(Self::of(format!("remove lens {name}"), scene, |s| {
             s.lenses.remove(index);
+            s.overlays.retain(|overlay| overlay.lens != *name);
+            let views = s.lenses.iter_mut().filter_map(|lens| lens.kind.best_view_mut()?.lenses.as_mut());
+            views.for_each(|shown| shown.retain(|shown| shown != name));
+            let steps = s.lenses.iter_mut().map(|lens| &mut lens.time).chain([&mut s.time_steps]);
+            steps.for_each(|steps| links::replace(steps, name, time));
         }))
+    }
+
+    /// Gives a lens another name wherever lenses and overlays name it: in its overlay, in views that show it, in lenses that are linked to it in
+    /// time. `None` where there is none at `index`.
+    pub fn rename_lens(scene: &Scene, index: usize, name: &str) -> Option<Self> {
+        let before = &scene.lenses.get(index)?.name;
+        Some(Self::of("rename lens", scene, |s| {
+            name.clone_into(&mut s.lenses[index].name);
+            let views = s.lenses.iter_mut().filter_map(|lens| lens.kind.best_view_mut()?.lenses.as_mut());
+            let named = views.flatten().chain(s.overlays.iter_mut().map(|overlay| &mut overlay.lens));
+            named.filter(|own| *own == before).for_each(|own| name.clone_into(own));
+            let steps = s.lenses.iter_mut().map(|lens| &mut lens.time).chain([&mut s.time_steps]);
+            steps.for_each(|steps| links::rename(steps, before, name));
+        }))
+    }
+
+    /// The lenses that are linked to one in time, by name.
+    pub fn linked_to<'a>(scene: &'a Scene, name: &str) -> Vec<&'a str> {
+        let is_linked = |lens: &&Lens| lens.time.iter().any(|step| links::linked_lens(step) == Some(name));
+        scene.lenses.iter().filter(is_linked).map(|lens| lens.name.as_str()).collect()
     }
 
     /// Moves a lens to another place in the order; `None` where either place is not.
@@ -203,7 +230,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::lens::kind::{Portal, SeeThrough};
+    use crate::lens::kind::{Portal, SeeThrough, TimeLens};
 
     fn resized(scene: &Scene, width: u32) -> Command {
         Command::of(format!("width {width}"), scene, |s| s.figure.size[0] = width)
@@ -254,6 +281,34 @@ mod tests {
         assert_eq!((later.moment, &later.lenses[0].time), (started.moment, &started.lenses[0].time));
         assert_eq!(Command::step_through(&scene, 0, here), None, "a window is no door");
         assert_eq!(Command::step_through(&scene, 1, here), None);
+    }
+
+    #[test]
+    fn links_follow_the_name_of_a_lens_and_outlive_it() {
+        let year = |year: i64| set_to(Moment::of_year(year).unwrap());
+        let lens = |name: &str, time: Vec<Handled>| Lens { time, ..Lens::plain(name, TimeLens::default(), [0.0; 3]) };
+        let lenses = vec![lens("then", vec![year(1650)]), lens("after", vec![links::link_to("then", "10 years")])];
+        let mut history =
+            History::new(Scene { lenses, time_steps: vec![links::link_to("then", "0 s")], ..Scene::default() });
+        let started = history.scene().clone();
+        let shown = |scene: &Scene| {
+            let steps = linked(&scene.lenses.last().unwrap().time, &scene.lenses).unwrap();
+            [moment_after(&steps, None, 0.0).unwrap(), scene.shown_moment()]
+        };
+        let as_before = shown(&started);
+        assert_eq!(as_before, [Moment::of_year(1660), Moment::of_year(1650)]);
+        assert_eq!(Command::linked_to(history.scene(), "then"), ["after"]);
+        history.apply(Command::rename_lens(history.scene(), 0, "old").unwrap());
+        assert_eq!(history.scene().lenses[1].time, [links::link_to("old", "10 years")]);
+        assert_eq!(history.scene().time_steps, [links::link_to("old", "0 s")]);
+        assert_eq!(shown(history.scene()), as_before);
+        assert_eq!(history.undo(), Some("rename lens"), "all of it is one edit");
+        assert_eq!(*history.scene(), started);
+        history.apply(Command::remove_lens(history.scene(), 0).unwrap());
+        assert_eq!(history.scene().lenses.len(), 1);
+        assert_eq!(shown(history.scene()), as_before);
+        history.undo();
+        assert_eq!(*history.scene(), started);
     }
 
     #[test]

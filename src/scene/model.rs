@@ -58,11 +58,16 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// The time operators of a lens, or of the whole scene, with those of other lenses in place of links; none where links lead nowhere.
+    pub fn steps_of(&self, lens: Option<usize>) -> Vec<Handled> {
+        let own = lens.map_or(Some(&self.time_steps), |lens| Some(&self.lenses.get(lens)?.time));
+        // Steps that do not fit are told where pictures are made.
+        own.and_then(|own| linked(own, &self.lenses).ok()).unwrap_or_default()
+    }
+
     /// The moment that shows outside all lenses; of several that show together the first.
     pub fn shown_moment(&self) -> Option<Moment> {
-        // Steps that do not fit are told where pictures are made.
-        let steps = linked(&self.time_steps, &self.lenses).unwrap_or_default();
-        moment_after(&steps, self.moment, self.time_s).unwrap_or(self.moment)
+        moment_after(&self.steps_of(None), self.moment, self.time_s).unwrap_or(self.moment)
     }
 }
 

@@ -117,6 +117,16 @@ impl View {
         Some(pixel.extend(d))
     }
 
+    /// Where a point appears, times a weight, and the weight: linear in the point, so that it holds of what is behind the eye too, where the weight
+    /// is less than 0. The pixel is x and y by the weight.
+    pub fn weighted_pixel(&self, world: DVec3) -> DVec3 {
+        let from_eye = world - self.camera.eye;
+        let weight = if self.is_orthographic() { 1.0 } else { from_eye.dot(self.basis.forward) };
+        let ndc = DVec2::new(from_eye.dot(self.basis.right), from_eye.dot(self.basis.up)) / self.half_extent();
+        let size = DVec2::new(self.size[0].into(), self.size[1].into());
+        (0.5 * size * DVec2::new(weight + ndc.x, weight - ndc.y)).extend(weight)
+    }
+
     /// The sight line through a point of the picture, in pixels (`x + ½, y + ½` = a pixel's centre). Its `t` is D.
     pub fn ray(&self, pixel: DVec2) -> Ray {
         let unit = pixel / DVec2::new(self.size[0].into(), self.size[1].into());
@@ -188,6 +198,19 @@ mod tests {
 
     proptest! {
         #![proptest_config(crate::seeds::config())]
+
+        /// Linear in the point, and the same pixel before the eye.
+        #[test]
+        fn weighted_pixels_are_pixels_before_the_eye(view in cameras(), a in prop::array::uniform3(-1e3..1e3f64), b in prop::array::uniform3(-1e3..1e3f64)) {
+            let [a, b] = [a, b].map(|place| view.camera.eye + DVec3::from(place));
+            let [own, other] = [a, b].map(|place| view.weighted_pixel(place));
+            match view.pixel(a) {
+                Some(pixel) => prop_assert!((own.truncate() / own.z).distance(pixel.truncate()) <= 1e-6 * (1.0 + pixel.truncate().length())),
+                None => prop_assert!(own.z <= 0.0),
+            }
+            let middle = view.weighted_pixel(a.midpoint(b));
+            prop_assert!(middle.distance(own.midpoint(other)) <= 1e-6 * (1.0 + own.length() + other.length()));
+        }
 
         #[test]
         fn a_ray_goes_where_its_pixel_says(view in cameras(), x in 0.0..1.0f64, y in 0.0..1.0f64, d in 0.6..5e3f64) {

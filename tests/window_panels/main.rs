@@ -1,6 +1,7 @@
 //! The window without a display: every panel is asked by what assistive technology reads of it, as somebody would use it.
 
 mod lenses;
+mod time_lenses;
 mod timeline;
 mod values;
 
@@ -124,6 +125,17 @@ fn drag(harness: &mut Panels, from: egui::Pos2, to: egui::Pos2) {
 fn write(harness: &mut Panels, text: &str) {
     harness.event(egui::Event::Text(text.to_owned()));
     harness.step();
+    harness.step();
+}
+
+/// Writes another text into a field, and is done with it.
+fn retype(harness: &mut Panels, label: &str, text: &str) {
+    harness.get_by_label(label).focus();
+    harness.step();
+    press(harness, Modifiers::COMMAND, Key::A);
+    press(harness, Modifiers::NONE, Key::Backspace);
+    write(harness, text);
+    press(harness, Modifiers::NONE, Key::Enter);
     harness.step();
 }
 

@@ -54,6 +54,8 @@ pub struct Change {
 
 /// The changes that the widgets of a frame ask for, in order, and the texts that are typed in them.
 pub struct Edits<'a> {
+    /// The scene that they are of.
+    pub scene: &'a Scene,
     /// Texts that are typed and not done yet.
     pub drafts: &'a mut Drafts,
     /// Changes that are to be made.

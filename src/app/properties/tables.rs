@@ -5,10 +5,11 @@ use toml::{Table as TomlTable, Value};
 
 use crate::{
     app::properties::{
-        edits::{Change, Drafts, Edits, To},
+        edits::{Edits, To},
+        handled::{EFFECTS, OPERATORS, list},
         kinds::{of_kind, of_other_kind},
-        values::value_of,
-        widget::{Setting, Takes, widget},
+        values::{title_of, value_of},
+        widget::{Setting, Takes, widget, wrong},
     },
     figure::scene_file::{
         best_view::VIEWS,
@@ -18,7 +19,7 @@ use crate::{
         shape_keys::SHAPES,
         test_keys::TESTS,
     },
-    shader::effect::{self, Fallback},
+    shader::effect,
 };
 
 /// Words that only a person has: what is written on figures.
@@ -118,6 +119,9 @@ pub fn table(ui: &mut Ui, edits: &mut Edits, keys: &Table, shown: Shown, given: 
                 let empty = Value::String(String::new());
                 field(ui, edits, key, &empty, false, &format!("{path}.{}", key.name));
             }
+            None if shows_all && matches!(key.kind, Kind::Operators) => {
+                field(ui, edits, key, &Value::Array(Vec::new()), false, &format!("{path}.{}", key.name));
+            }
             None => match value_of(key.default).filter(|_| shows_all && !matches!(key.kind, Kind::Background)) {
                 Some(value) => field(ui, edits, key, &value, false, &format!("{path}.{}", key.name)),
                 None => absent.push(key),
@@ -174,7 +178,8 @@ fn field(ui: &mut Ui, edits: &mut Edits, key: &Key, value: &Value, is_given: boo
         return;
     }
     match (key.kind, value) {
-        (Kind::Effects, _) => return effects(ui, edits, key, value, path),
+        (Kind::Effects, _) => return list(ui, edits, &EFFECTS, key, value, path),
+        (Kind::Operators, _) => return list(ui, edits, &OPERATORS, key, value, path),
         (Kind::Tables(keys), Value::Array(_)) => {
             ui.label(title_of(key.name)).on_hover_text(hint);
             ui.indent(path, |ui| tables(ui, edits, key, keys, value, path));
@@ -211,123 +216,4 @@ fn field(ui: &mut Ui, edits: &mut Edits, key: &Key, value: &Value, is_given: boo
         }
     });
     wrong(ui, edits.drafts, path);
-}
-
-/// Effects in order, with their parameters, and a menu of all that there are.
-fn effects(ui: &mut Ui, edits: &mut Edits, key: &Key, value: &Value, path: &str) {
-    let list = value.as_array().cloned().unwrap_or_default();
-    let title = ui.label(title_of(key.name)).on_hover_text(key.doc).id;
-    let named = |used: &Value| -> (String, TomlTable) {
-        match used {
-            Value::String(name) => (name.clone(), TomlTable::new()),
-            used => {
-                let table = used.as_table().cloned().unwrap_or_default();
-                (table.get("effect").and_then(Value::as_str).unwrap_or("").to_owned(), table)
-            }
-        }
-    };
-    for (i, used) in list.iter().enumerate() {
-        let (name, table) = named(used);
-        ui.indent((path, i), |ui| {
-            ui.horizontal(|ui| {
-                let shown = egui::ComboBox::from_id_salt((path, i, "effect")).selected_text(&name).height(360.0);
-                let shown = shown.show_ui(ui, |ui| {
-                    for definition in effect::effects() {
-                        let label = ui
-                            .selectable_label(definition.name == name, &definition.name)
-                            .on_hover_text(&definition.doc);
-                        if label.clicked() && definition.name != name {
-                            edits.push(format!("{path}.{i}"), To::Value(new_effect(definition)));
-                        }
-                    }
-                });
-                shown.response.labelled_by(title);
-                if ui.small_button("×").on_hover_text("Take this effect away").clicked() {
-                    let kept = list.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, own)| own.clone());
-                    let to = To::Value(Value::Array(kept.collect()));
-                    edits.push(path.to_owned(), to);
-                }
-            });
-            let Some(definition) = effect::find(&name) else { return };
-            for parameter in &definition.parameters {
-                let given = table.get(&parameter.name).cloned();
-                let value = given.or_else(|| match &parameter.fallback {
-                    Fallback::Value(_) => value_of(&parameter.default_text()),
-                    _ => None,
-                });
-                let place = format!("{path}.{i}.{}", parameter.name);
-                ui.horizontal(|ui| {
-                    let label = ui.label(title_of(&parameter.name)).on_hover_text(&parameter.doc);
-                    let value = value.unwrap_or_else(|| Value::String(String::new()));
-                    let without = parameter.default_text();
-                    let setting = Setting { path: &place, unit: &parameter.unit, hint: &without, label: label.id };
-                    let before = edits.changes.len();
-                    widget(ui, edits, Takes::of_parameter(&parameter.kind), &value, &setting);
-                    // An effect that was only a name becomes a table.
-                    for change in edits.changes.split_off(before) {
-                        let mut table = table.clone();
-                        table.insert("effect".to_owned(), Value::String(name.clone()));
-                        let value = match change.to {
-                            To::Value(value) => Some(value),
-                            To::Typed(text) => {
-                                let Some(value) = value_of(&text) else {
-                                    edits.drafts.wrong.insert(place.clone(), format!("{text} is not a value"));
-                                    continue;
-                                };
-                                Some(value)
-                            }
-                            To::Nothing => None,
-                        };
-                        match value {
-                            Some(value) => table.insert(parameter.name.clone(), value),
-                            None => table.remove(&parameter.name),
-                        };
-                        let to = To::Value(Value::Table(table));
-                        edits.changes.push(Change { path: format!("{path}.{i}"), to, is_held: change.is_held });
-                    }
-                });
-                wrong(ui, edits.drafts, &place);
-            }
-            wrong(ui, edits.drafts, &format!("{path}.{i}"));
-        });
-    }
-    ui.horizontal(|ui| {
-        ui.menu_button("Add effect", |ui| {
-            egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-                for definition in effect::effects() {
-                    if ui.button(&definition.name).on_hover_text(&definition.doc).clicked() {
-                        ui.close();
-                        edits.push(format!("{path}.{}", list.len()), To::Value(new_effect(definition)));
-                    }
-                }
-            });
-        });
-    });
-    wrong(ui, edits.drafts, path);
-}
-
-fn new_effect(definition: &effect::EffectDefinition) -> Value {
-    Value::String(definition.name.clone())
-}
-
-/// Shows what was wrong with the text for a key, if anything was.
-fn wrong(ui: &mut Ui, drafts: &Drafts, path: &str) {
-    if let Some(problem) = drafts.wrong.get(path) {
-        ui.colored_label(ui.visuals().error_fg_color, problem);
-    }
-}
-
-/// The name of a key as people read it.
-pub fn title_of(name: &str) -> String {
-    match name {
-        "poi" => return "Point of interest".to_owned(),
-        "fov_deg" => return "Field of view".to_owned(),
-        _ => {}
-    }
-    // The widget shows degrees.
-    let mut text = name.trim_end_matches("_deg").replace('_', " ");
-    if let Some(first) = text.get_mut(..1) {
-        first.make_ascii_uppercase();
-    }
-    text
 }

@@ -2,6 +2,8 @@
 
 use toml::{Table as TomlTable, Value};
 
+use crate::lens::Parameter;
+
 /// A number as people write it: no more digits than it has.
 pub fn trimmed(number: f64, most: usize) -> String {
     let text = format!("{number:.most$}");
@@ -33,6 +35,38 @@ pub fn value_of(text: &str) -> Option<Value> {
         .ok()
         .filter(|table| table.len() == 1)
         .and_then(|mut table| table.remove("v"))
+}
+
+/// The value of a parameter; `None`: it is none.
+pub fn parameter_of(value: &Value) -> Option<Parameter> {
+    match value {
+        Value::Boolean(is) => Some(Parameter::Boolean(*is)),
+        Value::Integer(_) | Value::Float(_) => Some(Parameter::Number(number_of(value))),
+        Value::String(text) => Some(Parameter::Text(text.clone())),
+        Value::Array(list) if list.iter().all(|own| own.is_integer() || own.is_float()) => {
+            Some(Parameter::Numbers(list.iter().map(number_of).collect()))
+        }
+        Value::Array(list) => {
+            let texts = list.iter().map(|own| own.as_str().map(str::to_owned));
+            texts.collect::<Option<_>>().map(Parameter::Texts)
+        }
+        Value::Datetime(_) | Value::Table(_) => None,
+    }
+}
+
+/// The name of a key as people read it.
+pub fn title_of(name: &str) -> String {
+    match name {
+        "poi" => return "Point of interest".to_owned(),
+        "fov_deg" => return "Field of view".to_owned(),
+        _ => {}
+    }
+    // The widget shows degrees.
+    let mut text = name.trim_end_matches("_deg").replace('_', " ");
+    if let Some(first) = text.get_mut(..1) {
+        first.make_ascii_uppercase();
+    }
+    text
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use crate::{
     app::properties::{
         edits::{Change, Drafts, Edits, To},
         looks,
-        values::{hex, number_of, number_value, trimmed},
+        values::{hex, number_of, number_value, trimmed, value_of},
     },
     figure::scene_file::keys::Kind,
     lens::rendering::ROWS,
@@ -38,6 +38,10 @@ pub enum Takes<'a> {
     Color,
     /// Text of its own.
     Text,
+    /// Texts of their own, with commas between them.
+    Texts,
+    /// Numbers with commas between them, as many as there may be.
+    List,
     /// Anything, as TOML.
     Toml,
 }
@@ -72,7 +76,13 @@ impl<'a> Takes<'a> {
         match kind {
             ParameterKind::Boolean => Self::Boolean,
             ParameterKind::Number { min, max } => Self::Number { min: *min, max: *max, is_whole: false },
-            ParameterKind::Text => Self::Text,
+            ParameterKind::Text
+            | ParameterKind::Moment
+            | ParameterKind::Span
+            | ParameterKind::Unit
+            | ParameterKind::Clock => Self::Text,
+            ParameterKind::Instants => Self::Texts,
+            ParameterKind::Weights => Self::List,
             ParameterKind::Word(words) => Self::Words(words.iter().map(String::as_str).collect()),
             ParameterKind::Color => Self::Color,
             ParameterKind::Vector => Self::Numbers,
@@ -168,21 +178,42 @@ pub fn widget(ui: &mut Ui, edits: &mut Edits, takes: Takes, value: &Value, setti
             }
         }
         (takes, _) => {
-            let takes_text = matches!(takes, Takes::Text);
-            edits.changes.extend(typed(ui, edits.drafts, takes_text, value, setting));
+            edits.changes.extend(typed(ui, edits.drafts, &takes, value, setting));
         }
     }
 }
 
+/// The value that a text means in a field for it; `None`: it is none.
+pub fn typed_value(takes: &Takes, text: &str) -> Option<Value> {
+    let parts = || text.split(',').map(str::trim).filter(|part| !part.is_empty());
+    let number = |part: &str| part.parse::<f64>().ok().filter(|n| n.is_finite()).map(Value::Float);
+    match takes {
+        Takes::Text | Takes::Words(_) => Some(Value::String(text.trim().to_owned())),
+        Takes::Texts => Some(Value::Array(parts().map(|part| Value::String(part.to_owned())).collect())),
+        Takes::List => parts().map(number).collect::<Option<_>>().map(Value::Array),
+        _ => value_of(text),
+    }
+}
+
+/// The text of a value in a field for it.
+fn text_of(takes: &Takes, value: &Value) -> String {
+    match (takes, value) {
+        (Takes::Text, Value::String(text)) => text.clone(),
+        (_, Value::String(text)) if text.is_empty() => String::new(),
+        (Takes::Texts, Value::Array(list)) if list.iter().all(Value::is_str) => {
+            list.iter().filter_map(Value::as_str).collect::<Vec<_>>().join(", ")
+        }
+        (Takes::List, Value::Array(list)) => {
+            list.iter().map(|own| trimmed(number_of(own), 6)).collect::<Vec<_>>().join(", ")
+        }
+        _ => value.to_string(),
+    }
+}
+
 /// A field for text, of its own or as TOML, and what becomes of the value when it is done.
-fn typed(ui: &mut Ui, drafts: &mut Drafts, takes_text: bool, value: &Value, setting: &Setting) -> Option<Change> {
+fn typed(ui: &mut Ui, drafts: &mut Drafts, takes: &Takes, value: &Value, setting: &Setting) -> Option<Change> {
     let Setting { path, hint, label, .. } = *setting;
-    let is_text = takes_text && value.is_str();
-    let is_absent = value.as_str() == Some("");
-    let now = match value.as_str().filter(|_| is_text || is_absent) {
-        Some(text) => text.to_owned(),
-        None => value.to_string(),
-    };
+    let now = text_of(takes, value);
     let mut text = drafts.texts.get(path).cloned().unwrap_or_else(|| now.clone());
     // What takes it away stands behind it, and no panel gets wider for either.
     let width = (ui.available_width() - TAKE_AWAY_WIDTH).clamp(40.0, 150.0);
@@ -191,13 +222,27 @@ fn typed(ui: &mut Ui, drafts: &mut Drafts, takes_text: bool, value: &Value, sett
     if response.changed() {
         drafts.texts.insert(path.to_owned(), text.clone());
     }
-    if response.lost_focus() && text != now {
-        let to = match text.trim().is_empty() {
-            true => To::Nothing,
-            false if is_text => To::Value(Value::String(text)),
-            false => To::Typed(text),
+    if response.lost_focus() && text == now {
+        drafts.texts.remove(path);
+    } else if response.lost_focus() {
+        let own = match takes {
+            Takes::Text if !value.is_str() => None,
+            Takes::Text | Takes::Texts | Takes::List => typed_value(takes, &text),
+            _ => None,
+        };
+        let to = match (text.trim().is_empty(), own) {
+            (true, _) => To::Nothing,
+            (false, Some(value)) => To::Value(value),
+            (false, None) => To::Typed(text),
         };
         return Some(Change { path: path.to_owned(), to, is_held: false });
     }
     None
+}
+
+/// Shows what was wrong with the text for a key, if anything was.
+pub fn wrong(ui: &mut Ui, drafts: &Drafts, path: &str) {
+    if let Some(problem) = drafts.wrong.get(path) {
+        ui.colored_label(ui.visuals().error_fg_color, problem);
+    }
 }

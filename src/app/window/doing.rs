@@ -23,7 +23,7 @@ use crate::{
     figure::{picture, scene_file},
     geom::Aabb,
     lens::Lens,
-    scene::Scene,
+    scene::{Command, Scene},
     view::{Projection, navigate},
 };
 
@@ -159,16 +159,28 @@ impl Window {
         }
     }
 
-    /// Removes the chosen lens, and the overlays that show it.
+    /// Removes the chosen lens, and what shows it; says which lenses were linked to it, as they keep what they show.
     fn delete_chosen_lens(&mut self) {
-        if let Some(index) = self.chosen.lens.take() {
-            let name = self.document.scene().lenses[index].name.clone();
-            self.document.edit(format!("remove lens {name}"), |scene| {
-                scene.overlays.retain(|overlay| overlay.lens != name);
-                scene.lenses.remove(index);
-            });
-            self.keep_chosen();
+        let Some(index) = self.chosen.lens.take() else { return };
+        self.document.settle();
+        let scene = self.document.scene();
+        let Some(command) = Command::remove_lens(scene, index) else { return };
+        let name = &scene.lenses[index].name;
+        let linked = Command::linked_to(scene, name);
+        let text = match &linked[..] {
+            [] => None,
+            linked => Some(format!(
+                "{name} is removed. Linked to it {} {}: what {} shows stays, by steps of its own.",
+                if linked.len() == 1 { "was" } else { "were" },
+                linked.join(", "),
+                if linked.len() == 1 { "it" } else { "each" },
+            )),
+        };
+        self.document.apply(command);
+        if let Some(text) = text {
+            self.say(text);
         }
+        self.keep_chosen();
     }
 
     /// Changes between perspective and orthographic.
@@ -357,7 +369,7 @@ impl Window {
     /// Moves a lens to another place in the order.
     pub(in crate::app) fn move_lens(&mut self, index: usize, to: usize) {
         self.document.settle();
-        if let Some(command) = crate::scene::Command::reorder_lens(self.document.scene(), index, to) {
+        if let Some(command) = Command::reorder_lens(self.document.scene(), index, to) {
             self.document.apply(command);
             self.chosen.lens = Some(to);
         }

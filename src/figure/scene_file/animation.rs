@@ -20,7 +20,7 @@ use crate::{
     lens::nearest::did_you_mean,
     scene::{
         Scene,
-        animation::{Animation, Change, ChangeKey, MOST_FRAMES, Track},
+        animation::{Animation, Change, ChangeKey, FPS, MOMENTS_S, MOST_FRAMES, Track},
     },
     time::Moment,
     view::{
@@ -31,10 +31,6 @@ use crate::{
 
 /// Latest time of a key, seconds.
 const LATEST_S: f64 = 1e6;
-/// How long moments go by where nothing else says it, seconds.
-const MOMENTS_S: f64 = 10.0;
-/// Pictures per second where none are given.
-const FPS: f64 = 30.0;
 /// What an animation can change, by the first word of the way to it.
 const CHANGED: [&str; 4] = ["lens", "poi", "style", "sun"];
 

@@ -146,26 +146,18 @@ fn set_by(scene: &Scene, assignment: &str, written: &Options, read: &Options) ->
     Ok(edit.command_to(scene, after))
 }
 
-/// Gives a lens another name, wherever the scene names it: in its overlay, in views that show it, in what changes over time.
+/// Gives a lens another name, wherever the scene names it: as [`Command::rename_lens`], and in what changes over time.
 ///
 /// # Errors
 /// The name is another lens', or empty; there is no lens at `index`.
 pub fn rename_lens(scene: &Scene, index: usize, name: &str, options: &Options) -> Result<Command, SceneFileError> {
     let mut after = scene.clone();
     let title = "rename lens";
-    if let Some(lens) = after.lenses.get_mut(index) {
-        let old = std::mem::replace(&mut lens.name, name.to_owned());
-        let renamed = |own: &mut String| {
-            if *own == old {
-                name.clone_into(own);
-            }
-        };
-        after.overlays.iter_mut().for_each(|overlay| renamed(&mut overlay.lens));
-        let shown = after.lenses.iter_mut().filter_map(|lens| lens.kind.best_view_mut()?.lenses.as_mut());
-        shown.flatten().for_each(renamed);
+    if let (Some(lens), Some(command)) = (scene.lenses.get(index), Command::rename_lens(scene, index, name)) {
+        command.redo(&mut after);
         for change in after.animation.iter_mut().flat_map(|animation| &mut animation.changes) {
             let Ok(mut way) = segments_of(&change.path) else { continue };
-            if way.len() > 1 && way[0] == "lens" && way[1] == old {
+            if way.len() > 1 && way[0] == "lens" && way[1] == lens.name {
                 way[1] = name.to_owned();
                 change.path = path_of(&way);
             }
@@ -482,6 +474,10 @@ shape = { kind = "box", center = [0, 0, 0], size = [1, 2, 3] }
         assert_eq!(after("poi.0={at=[1,2,3]}").unwrap().pois[0].name, "poi-0");
         assert_eq!(after("lens.0.effects=unset").unwrap().lenses[0].effects, []);
         assert_eq!(after("camera=unset").unwrap().camera, None);
+        let mut with_steps = after("time.steps=[{op=\"set\",at=\"1650\"}]").unwrap();
+        assert_eq!(with_steps.time_steps.len(), 1);
+        set(&with_steps.clone(), "time.steps=unset").unwrap().redo(&mut with_steps);
+        assert_eq!(with_steps.time_steps, []);
         let both = after(
             "lens.0.shapes=[{kind=\"sphere\",center=[0,0,0],radius=1},{kind=\"sphere\",center=[9,0,0],radius=1}]",
         );

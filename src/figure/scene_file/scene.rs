@@ -99,7 +99,7 @@ const SECTIONS: &[Section] = &[
         holds: Holds::Table(
             |scene, options| said(row::written(TIME_ROWS, scene, &Scene::default(), options)),
             |reader, fields, scene| {
-                (scene.time_s, scene.moment) = (0.0, None);
+                (scene.time_s, scene.moment, scene.time_steps) = (0.0, None, Vec::new());
                 row::read(TIME_ROWS, fields, reader, scene);
             },
         ),

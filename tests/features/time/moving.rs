@@ -153,8 +153,7 @@ fn compare(studio: &mut Studio, scene: &Scene, discs: &[Disc], second: f64, back
         seconds.sort_by(f64::total_cmp);
         seconds.dedup();
         let share = |at: &f64| shown.iter().filter(|(second, _)| second == at).map(|(_, weight)| weight).sum::<f64>();
-        let there: Vec<f64> =
-            seconds.iter().filter(|at| depth_in_pane(**at, place) > 0.0).map(|at| share(at)).collect();
+        let there: Vec<f64> = seconds.iter().filter(|at| depth_in_pane(**at, place) > 0.0).map(share).collect();
         let expected: f64 = there.iter().map(|share| 1.0 - 0.5 * share).product();
         let error = (f64::from(found) - expected).abs();
         assert!(
