@@ -7,11 +7,17 @@ use crate::{
     time::Moment,
 };
 
+/// From when on (`None`: since ever) something has which value (`None`: none), ascending.
+pub type Values<T> = Vec<(Option<Moment>, Option<T>)>;
+
+/// A row: since when, until when, and what holds.
+pub type Held<T> = (Option<Moment>, Option<Moment>, T);
+
 /// The values of an attribute over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
-    /// By object, at least one: from when on (`None`: since ever) it has which value (`None`: none), ascending.
-    pub of: FxHashMap<u32, Vec<(Option<Moment>, Option<Value>)>>,
+    /// By object, at least one each.
+    pub of: FxHashMap<u32, Values<Value>>,
 }
 
 impl CityModel {
@@ -33,10 +39,8 @@ impl CityModel {
 
 /// Rows that each say from when until when something holds, as values from when on: where nothing holds, `None`. Of rows that hold at one moment
 /// the one that began last counts.
-pub fn breakpoints<T: Copy + PartialEq>(
-    rows: &[(Option<Moment>, Option<Moment>, T)],
-) -> Vec<(Option<Moment>, Option<T>)> {
-    let holds = |at: Option<Moment>, (begin, end, _): &(Option<Moment>, Option<Moment>, T)| {
+pub fn breakpoints<T: Copy + PartialEq>(rows: &[Held<T>]) -> Values<T> {
+    let holds = |at: Option<Moment>, (begin, end, _): &Held<T>| {
         *begin <= at && end.is_none_or(|end| at.is_none_or(|at| at < end))
     };
     let mut moments: Vec<Option<Moment>> = rows.iter().map(|row| row.0).collect();
@@ -45,12 +49,12 @@ pub fn breakpoints<T: Copy + PartialEq>(
     moments.dedup();
     let at = |at: Option<Moment>| {
         let holding = rows.iter().filter(|row| holds(at, row));
-        holding.fold(None, |best: Option<&(Option<Moment>, Option<Moment>, T)>, row| match best {
+        holding.fold(None, |best: Option<&Held<T>>, row| match best {
             Some(best) if best.0 > row.0 => Some(best),
             _ => Some(row),
         })
     };
-    let mut found: Vec<(Option<Moment>, Option<T>)> = Vec::with_capacity(moments.len());
+    let mut found: Values<T> = Vec::with_capacity(moments.len());
     for moment in moments {
         let value = at(moment).map(|row| row.2);
         if found.last().is_none_or(|last| last.1 != value) {

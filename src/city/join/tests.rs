@@ -106,7 +106,7 @@ fn what_is_no_table_is_told() {
 #[test]
 fn rows_with_dates_are_values_over_time() {
     let file = std::env::temp_dir().join(format!("veduta-over-time-{}.csv", std::process::id()));
-    let mut read = |text: &str, until: &str| {
+    let read = |text: &str, until: &str| {
         std::fs::write(&file, text).expect("a temporary file");
         let valid = [Some("since".to_owned()), Some(until.to_owned())];
         let join = Join { file: file.clone(), valid, ..Join::default() };

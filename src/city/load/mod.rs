@@ -82,7 +82,7 @@ fn add_changes(model: &mut CityModel, options: &LoadOptions, progress: &dyn Prog
                 LoadError::new(&file, message)
             })?,
             Between::Files { files, key } => {
-                let own = LoadOptions { changes: Default::default(), frames: model.frames.clone(), ..options.clone() };
+                let own = LoadOptions { changes: Default::default(), frames: model.frames, ..options.clone() };
                 let before = load(files, &own, progress)?;
                 let file = files.first().cloned().unwrap_or_default();
                 let gone = model.add_change_since(&file, attribute, &before, key.as_deref())?;
