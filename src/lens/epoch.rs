@@ -71,7 +71,7 @@ impl Instant {
     pub fn words(&self) -> [u32; 4] {
         match self.at {
             InstantOf::Moment(at) => {
-                let [hour, micro] = at.map_or(TIMELESS, Moment::words);
+                let [hour, micro] = at.map_or(Moment::TIMELESS, Moment::words);
                 [0, hour, micro, 0]
             }
             InstantOf::Later(by) => {
@@ -153,7 +153,7 @@ impl Operator {
         match &self.exact {
             Exact::Set(moment) => Some(*moment),
             Exact::Own(program) => {
-                let moment = at.map_or(TIMELESS, Moment::words);
+                let moment = at.map_or(Moment::TIMELESS, Moment::words);
                 sound(program.moment(moment, &self.words).unwrap_or(moment))
             }
             Exact::Shift(by) => at.map(|at| at.shifted(*by)),
@@ -315,13 +315,10 @@ pub fn set_to(moment: Moment) -> Handled {
     Handled { handler: SET.to_owned(), parameters: [at].into() }
 }
 
-/// No moment, as shaders have it.
-pub const TIMELESS: [u32; 2] = [(-i32::MAX).cast_unsigned(), 0];
-
 /// What shaders make of two words (`lib/moment.wgsl`).
 fn sound([hour, micro]: [u32; 2]) -> Option<Moment> {
     const MOST_MICROS: u32 = 3_599_999_999;
-    if hour == TIMELESS[0] {
+    if hour == Moment::TIMELESS[0] {
         return None;
     }
     let clamped = Moment::of_words([hour, micro.min(MOST_MICROS)]);
@@ -481,8 +478,8 @@ mod tests {
             let operator = Operator::new(&step, 0.0).expect("an operator");
             let definition = &crate::shader::handlers()[operator.handler as usize];
             let program = HostProgram::new(definition).expect("a program");
-            let words = program.moment(at.map_or(TIMELESS, Moment::words), &operator.words).expect("a moment");
-            let expected = operator.apply(at).map_or(TIMELESS, Moment::words);
+            let words = program.moment(at.map_or(Moment::TIMELESS, Moment::words), &operator.words).expect("a moment");
+            let expected = operator.apply(at).map_or(Moment::TIMELESS, Moment::words);
             prop_assert_eq!(words, expected, "{:?} of {:?}", step, at);
         }
 

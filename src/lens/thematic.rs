@@ -10,7 +10,6 @@ use crate::{
         breaks::{Classing, borders},
         color::{Srgb, parse_hex},
         effect_use::{EffectUse, Parameter},
-        epoch::TIMELESS,
         measures::{self, Measure},
         ramp::{MAX_CATEGORIES, RampColors, RampKind},
         relief,
@@ -361,7 +360,7 @@ impl ThematicScale {
                 let all: Vec<_> = before.into_iter().chain(own.iter().copied()).collect();
                 words.push(all.len() as u32);
                 for (begin, value) in all {
-                    words.extend(begin.map_or(TIMELESS, Moment::words));
+                    words.extend(begin.map_or(Moment::TIMELESS, Moment::words));
                     words.push(bytes(self.color_of(value, &model.strings)));
                 }
             }

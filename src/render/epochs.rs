@@ -13,7 +13,7 @@ use crate::{
     geom::{Aabb, Volume},
     lens::{
         Lens, Operator,
-        epoch::{Ghosts, Instant, InstantOf, TIMELESS, linked},
+        epoch::{Ghosts, Instant, InstantOf, linked},
     },
     render::hiding::{Presence, rounded},
     scene::Scene,
@@ -205,7 +205,7 @@ impl Epochs {
         met: &MetLenses,
         moving: &[Option<Moment>],
     ) -> (Vec<u32>, Vec<u32>) {
-        let of = |moment: Option<Moment>| moment.map_or(TIMELESS, Moment::words);
+        let of = |moment: Option<Moment>| moment.map_or(Moment::TIMELESS, Moment::words);
         let [first, last] = self.range.map_or([None; 2], |range| range.map(Some));
         // What is gone by less shows yet; ends of months make a few days of difference.
         let reach = self.reach();

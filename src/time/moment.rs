@@ -40,6 +40,9 @@ impl Moment {
         self.0
     }
 
+    /// No moment at all, as shaders have it.
+    pub const TIMELESS: [u32; 2] = [(-i32::MAX).cast_unsigned(), 0];
+
     /// As shaders have it: whole hours since the start of 1970, and microseconds of that hour.
     pub fn words(self) -> [u32; 2] {
         [(self.0.div_euclid(HOUR) as i32).cast_unsigned(), self.0.rem_euclid(HOUR) as u32]
