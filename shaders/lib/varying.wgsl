@@ -2,6 +2,16 @@
 
 var<private> moment_here: Moment;
 
+// Of a frame under the sun of one of several moments: that moment, and whether it is the scene's own.
+const LIT_MOMENT: u32 = 21u;
+const IS_OWN_SUN: u32 = 23u;
+
+// Whether a point is to be seen under that sun; what is behind the city is under the scene's own.
+fn is_lit_by_this_sun(point: Point) -> bool {
+    let is_own = object_values[IS_OWN_SUN] != 0u;
+    return select(are_same(moment_here, moment_in(LIT_MOMENT)), is_own, point.surface == NO_SURFACE);
+}
+
 // A value of a list of values that begins at `first`. Where its highest byte is 0, the others say how far behind that stands, from when on it is
 // which: how many there are, and of each a moment and the value.
 fn value_then(first: u32, value: u32) -> u32 {

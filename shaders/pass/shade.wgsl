@@ -103,9 +103,13 @@ fn take(in: Corner) {
 
 //@handlers
 
+// Whether the frame's sun is that of what is shaded.
+var<private> is_kept: bool = true;
+
 fn finished(paint: vec4f, point: Point, pixel: vec2i, classes: Classes) -> vec4f {
     let seen = outlines(paint, pixel, classes);
     write_classes(pixel, point, classes);
+    is_kept = is_lit_here(point);
     if SUMMED {
         return vec4f(seen.rgb * seen.a, seen.a);
     }
@@ -117,14 +121,22 @@ fn finished(paint: vec4f, point: Point, pixel: vec2i, classes: Classes) -> vec4f
 fn surface(in: Corner) -> @location(0) vec4f {
     take(in);
     let pixel = vec2i(in.clip.xy);
-    return paint_of_surface(pixel, in.clip.xy, textureLoad(scene_depth, pixel, 0), in.part.x);
+    let paint = paint_of_surface(pixel, in.clip.xy, textureLoad(scene_depth, pixel, 0), in.part.x);
+    if !is_kept {
+        discard;
+    }
+    return paint;
 }
 
 // Where nothing stands: the stored depth is its clear value, 0.
 @fragment
 fn background(in: Corner) -> @location(0) vec4f {
     take(in);
-    return paint_of_background(vec2i(in.clip.xy), in.clip.xy, in.part.x);
+    let paint = paint_of_background(vec2i(in.clip.xy), in.clip.xy, in.part.x);
+    if !is_kept {
+        discard;
+    }
+    return paint;
 }
 
 // Pixels as a neighbourhood filter reads them: colours times opacity, and of a transparent picture opacity.

@@ -220,8 +220,10 @@ impl Epochs {
         words.extend([self.combinations() as u32, 0]);
         words.extend([0, self.own.len() as u32, 1]);
         words.extend([self.ghosts.past, self.ghosts.future].iter().flat_map(|span| span.words()));
-        words.push(words.len() as u32 + 2);
+        words.push(words.len() as u32 + 5);
         words.push(u32::from(self.shows_any));
+        // Under which sun a frame is.
+        words.extend([0, 0, 1]);
         words.extend(moving.iter().flat_map(|moment| of(*moment)));
         let mut begins = Vec::new();
         for (_, operator) in &self.operators {

@@ -56,6 +56,10 @@ pub struct FrameInput<'a> {
     pub sample: u32,
     /// How many there will be.
     pub samples: u32,
+    /// Suns of several moments, each with its operations; each is drawn in a frame of its own, over the others.
+    pub suns: &'a [(Sun, Operations)],
+    /// Which of how many suns this is.
+    pub sun_of: [u32; 2],
     /// Whether a picture of one sample tells by itself how the city hides the sky.
     pub screen_occlusion: bool,
     /// What moves the city.
@@ -99,7 +103,7 @@ impl FrameInput<'_> {
 
     /// Whether this sample is the last and something stands over the picture.
     pub fn wants_furniture(&self) -> bool {
-        !self.furniture.is_empty() && self.sample + 1 == self.samples
+        !self.furniture.is_empty() && self.is_last()
     }
 
     /// Haze per radius of the scene; none in orthographic views, which have no distance, nor on clay.
@@ -114,6 +118,16 @@ impl FrameInput<'_> {
             Background::Color(_) => Behind::OneColor,
             Background::Sky => Behind::Sky,
         }
+    }
+
+    /// Whether nothing is drawn of the picture after it.
+    pub fn is_last(&self) -> bool {
+        self.sample + 1 == self.samples && self.sun_of[0] + 1 == self.sun_of[1]
+    }
+
+    /// Whether nothing was drawn of the picture before it.
+    pub fn is_first(&self) -> bool {
+        self.sample == 0 && self.sun_of[0] == 0
     }
 
     /// Whether the picture is the mean of several samples.

@@ -24,6 +24,9 @@ use crate::{
     time::Moment,
 };
 
+/// The word of the object values from which on it is said under which sun a frame is: `lib/varying.wgsl` has the same.
+const LIT_MOMENT: usize = 21;
+
 /// Width of a lens outline, points.
 const OUTLINE_PT: f64 = 1.2;
 /// And pixels at most: it is looked for pixel by pixel, and of loops software adapters go 65,535 rounds in all.
@@ -117,6 +120,8 @@ pub struct SceneTime {
     pub moves: bool,
     /// See `moves`.
     pub moving: Vec<Option<Moment>>,
+    /// The moments whose suns shine somewhere, the scene's own first; empty: one sun is everywhere.
+    pub suns: Vec<Option<Moment>>,
 }
 
 /// What operations are made of beside lenses and cities.
@@ -180,6 +185,8 @@ pub struct Operations {
     pub moves: bool,
     /// Whether some look otherwise at other moments.
     pub varies: bool,
+    /// The moments whose suns shine somewhere, the scene's own first; empty: one sun is everywhere.
+    pub suns: Vec<Option<Moment>>,
     /// Which objects of the scene's own city that is.
     pub presence: Arc<[Presence]>,
     /// What lenses do to the moment, bottom lens first.
@@ -264,7 +271,10 @@ impl Operations {
     fn add_time(&mut self, time: &SceneTime, visible: &[bool], models: &[&CityModel]) {
         let has_histories = models.iter().any(|model| !model.histories.is_empty());
         let has_any = || time.lifetimes.iter().any(|lifetimes| lifetimes.has_any());
-        self.varies = time.epochs.is_any() && has_histories;
+        let is_lit = !time.suns.is_empty();
+        self.varies = is_lit || (time.epochs.is_any() && has_histories);
+        self.suns.clone_from(&time.suns);
+        self.uber.lit = is_lit;
         self.timed = time.moves || self.varies || (time.epochs.is_any() && has_any());
         if !self.timed {
             return;
@@ -296,6 +306,14 @@ impl Operations {
             self.uber.effects = each_once(std::mem::take(&mut self.uber.effects));
             self.uber.lines = true;
         }
+    }
+
+    /// The same for a frame under the sun of one of its moments.
+    pub fn under_sun(&self, number: usize) -> Self {
+        let mut own = self.clone();
+        let [hour, micro] = self.suns.get(number).copied().flatten().map_or(Moment::TIMELESS, Moment::words);
+        own.object_values[LIT_MOMENT..LIT_MOMENT + 3].copy_from_slice(&[hour, micro, u32::from(number == 0)]);
+        own
     }
 
     /// What one module of the uber back end has to hold for this scene.
@@ -372,7 +390,8 @@ impl Operations {
     pub fn context_plan(&self, haze: bool) -> Plan {
         let steps = self.steps(&[], |_| None);
         let Self { timed, partly, moves, varies, .. } = *self;
-        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, moves, varies, ..Plan::default() }
+        let lit = !self.suns.is_empty();
+        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, moves, varies, lit, ..Plan::default() }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
@@ -411,7 +430,9 @@ impl Operations {
         let epochs = self.epochs.iter().filter_map(epoch).collect();
         let lines = draws_lines(&steps);
         let Self { timed, partly, moves, varies, .. } = *self;
-        Plan { lenses, steps, haze, masks, lines, contents, timed, partly, moves, varies, epochs, ..Plan::default() }
+        let lit = !self.suns.is_empty();
+        let of_time = Plan { timed, partly, moves, varies, lit, epochs, ..Plan::default() };
+        Plan { lenses, steps, haze, masks, lines, contents, ..of_time }
     }
 
     /// The list as steps; `place` finds a lens in the plan.

@@ -631,7 +631,14 @@ impl Studio {
     /// What a scene is in a picture of this size and so many samples.
     fn resolve(&self, drawn: &Drawn, size: [u32; 2], samples: u32) -> Result<Resolved, RenderError> {
         let camera = self.camera(&drawn.scene, size);
-        Ok(self.surroundings().resolve(drawn, &camera, size, samples, &mut self.known())?)
+        let mut resolved = self.surroundings().resolve(drawn, &camera, size, samples, &mut self.known())?;
+        let scene = &*drawn.scene;
+        for (number, moment) in resolved.operations.suns.iter().enumerate() {
+            let then = Scene { moment: *moment, time_steps: Vec::new(), ..scene.clone() };
+            let sun = self.sun_by_date(&then)?.unwrap_or(scene.sun);
+            resolved.suns.push((sun, resolved.operations.under_sun(number)));
+        }
+        Ok(resolved)
     }
 
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
@@ -829,6 +836,8 @@ fn input<'a>(scene: &Scene, request: &Request, resolved: &'a Resolved, tile: Pic
         masks: request.statistics || request.aovs.lens_mask,
         sample: 0,
         samples: request.samples.max(1),
+        suns: &resolved.suns,
+        sun_of: [0, 1],
         screen_occlusion: request.screen_occlusion,
         moved: &resolved.deformations.moved,
         chord_px: scene.style.chord_px,

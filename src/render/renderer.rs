@@ -185,13 +185,27 @@ impl Renderer {
 
     /// Draws one sample into the targets; the picture stands in `targets.picture` after the last one.
     pub fn draw(&mut self, input: &FrameInput, timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {
-        let drawn = self.draw_frame(input, timer).and_then(|drawn| self.gpu.check().map(|()| drawn));
+        let drawn = self.draw_suns(input, timer).and_then(|drawn| self.gpu.check().map(|()| drawn));
         if drawn.is_err() {
             // What was to be made may not be there.
             self.view.own_sprites.forget();
             self.view.passes.forget();
         }
         drawn
+    }
+
+    /// Draws the frames of all suns, one over the other.
+    fn draw_suns(&mut self, input: &FrameInput, mut timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {
+        if input.suns.is_empty() {
+            return self.draw_frame(input, timer);
+        }
+        let mut records = Vec::new();
+        for (number, (sun, operations)) in input.suns.iter().enumerate() {
+            let sun_of = [number as u32, input.suns.len() as u32];
+            let own = FrameInput { sun: *sun, operations, sun_of, ..input.clone() };
+            records.extend(self.draw_frame(&own, timer.take())?);
+        }
+        Ok(records)
     }
 
     fn draw_frame(&mut self, input: &FrameInput, timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {

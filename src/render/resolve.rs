@@ -32,8 +32,9 @@ use crate::{
         sun_eye::MapSize,
         volume::LensVolume,
     },
-    scene::{Drawn, Scene},
+    scene::{Drawn, Scene, Sun, SunTime},
     shader::{MOST_SLOTS, MOST_VOLUMES},
+    time::Moment,
     view::{Camera, CameraError, View},
 };
 
@@ -92,6 +93,8 @@ pub(super) struct Resolved {
     pub operations: Operations,
     pub contents: SceneContents,
     pub deformations: SceneDeformations,
+    /// Suns of several moments, the scene's own first, each with what the operations are in its frame; empty: there is one.
+    pub suns: Vec<(Sun, Operations)>,
 }
 
 impl Surroundings<'_> {
@@ -140,7 +143,7 @@ impl Surroundings<'_> {
         let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved)).union(moving.bounds);
         let view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
-        Ok(Resolved { view, volumes, solids, operations, contents, deformations })
+        Ok(Resolved { view, volumes, solids, operations, contents, deformations, suns: Vec::new() })
     }
 
     /// The volumes of a scene's enabled lenses.
@@ -273,6 +276,7 @@ impl Surroundings<'_> {
             false => Moving { bounds: Aabb::EMPTY, ..Moving::default() },
         };
         time.moving.clone_from(&moving.moments);
+        time.suns = suns(scene, &time.epochs, &places).map_err(ResolveError::Scene)?;
         let beside = Beside { tables: &tables, time: &time, point_px: scene.figure.point_px() };
         let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &beside);
         let mut operations = made.map_err(|error| ResolveError::Scene(error.to_string()))?;
@@ -330,6 +334,25 @@ impl Surroundings<'_> {
         let lifetimes = std::iter::once(own).chain(contents.models.iter().map(of_content)).collect();
         Ok(SceneTime { epochs, lifetimes, moves, ..SceneTime::default() })
     }
+}
+
+/// Suns of different moments in one picture, at most: each takes a frame.
+const MOST_SUNS: usize = 8;
+
+/// The moments whose suns shine somewhere, the scene's own first; none where one sun is everywhere.
+fn suns(scene: &Scene, epochs: &Epochs, places: &[LensPlaces]) -> Result<Vec<Option<Moment>>, String> {
+    let own = epochs.own.first().and_then(|(moment, _)| *moment);
+    if !scene.sun.in_lenses || scene.sun.when != SunTime::Scene || places.is_empty() {
+        return Ok(Vec::new());
+    }
+    let too_many = || {
+        format!("[sun] in_lenses: lenses show more than {MOST_SUNS} moments; fewer would be right, or one sun for all")
+    };
+    let anywhere = MetLenses::new(None, places);
+    let all = epochs.moments_of(anywhere.of(0)).filter(|all| all.len() <= MOST_SUNS).ok_or_else(too_many)?;
+    let others = all.into_iter().filter(|moment| *moment != own);
+    let suns: Vec<Option<Moment>> = std::iter::once(own).chain(others).collect();
+    Ok(if suns.len() > 1 { suns } else { Vec::new() })
 }
 
 /// Where the lenses with time operators are in a view, ascending; without one they may be anywhere.

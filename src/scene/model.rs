@@ -132,6 +132,8 @@ pub struct Sun {
     pub ambient_occlusion: bool,
     /// When it shines: in place of `azimuth` and `elevation`.
     pub when: SunTime,
+    /// Whether it stands elsewhere in time lenses: where it does at the moments that show there. Only at the scene's own moment.
+    pub in_lenses: bool,
     /// Where on the earth, degrees north and east; `None`: where the city's reference system says.
     pub place: Option<DVec2>,
     /// How far the city's clock is ahead of UTC, hours; `None`: whole hours by its longitude.
@@ -160,6 +162,7 @@ impl Default for Sun {
             size: 0.53_f64.to_radians(),
             ambient_occlusion: true,
             when: SunTime::Never,
+            in_lenses: false,
             place: None,
             utc_offset_h: None,
         }

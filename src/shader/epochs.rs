@@ -250,6 +250,14 @@ fn exists(asked: &Asked, partly: bool, moves: bool) -> String {
     )
 }
 
+/// `is_lit_here`: whether what is shaded is to be seen under the sun of the frame.
+pub(super) fn is_lit_here(lit: bool) -> &'static str {
+    match lit {
+        true => "fn is_lit_here(point: Point) -> bool {\n    return is_lit_by_this_sun(point);\n}\n\n",
+        false => "fn is_lit_here(point: Point) -> bool {\n    return true;\n}\n\n",
+    }
+}
+
 /// `comes`: whether what is not there at a place will be there soon, at one of the moments that show.
 pub(super) fn comes(asked: &Asked) -> String {
     let Asked { subject, parameters, arguments, suffix } = asked;

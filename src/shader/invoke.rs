@@ -8,7 +8,7 @@ use crate::shader::{
         prototype::{EffectKind, Mode, Stage},
     },
     plan::uber::Uber,
-    writer::{MOMENT_HERE, as_is},
+    writer::{as_is, moment_here},
 };
 
 /// The handlers of the module, with their numbers.
@@ -153,7 +153,7 @@ pub(super) fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let has = |kind| has(uber, kind, handlers);
     let share = share_argument(uber);
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
-    text.push_str(if uber.varies { MOMENT_HERE } else { "" });
+    text.push_str(if uber.varies { moment_here(uber.partly) } else { "" });
     if has(EffectKind::Material) {
         text.push_str("    var material = Material(as_is((*point).base), (*point).emission, vec3f(0.0), 32.0);\n");
         let call = format!("material = invoke_material(material, *point, by{share});\n");

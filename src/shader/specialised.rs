@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::shader::{
-    bodies, effect::definition::EffectDefinition, masks, plan::Plan, regions, shading::Shading, writer::Writer,
+    bodies, effect::definition::EffectDefinition, epochs, masks, plan::Plan, regions, shading::Shading, writer::Writer,
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`. `names` of the plan's lenses
@@ -18,6 +18,7 @@ pub(super) fn source(plan: &Plan, handlers: &[EffectDefinition], names: &[&str],
     text.push_str("// ==== this scene\n\n");
     text.push_str(&writer.classes());
     text.push_str(&if plan.varies { writer.moments() } else { String::new() });
+    text.push_str(epochs::is_lit_here(plan.lit));
     match &plan.regions {
         None => {
             text.push_str(&writer.shade(""));

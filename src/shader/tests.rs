@@ -119,6 +119,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         partly: seed % 3 == 1,
         moves: seed % 3 < 2 && seed % 7 < 3,
         varies: seed % 3 < 2 && seed % 5 < 2,
+        lit: seed % 3 < 2 && seed % 5 < 1,
         epochs: epochs_of(seed),
         ..Plan::default()
     };
@@ -146,6 +147,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         partly: plan.partly,
         moves: plan.moves,
         varies: plan.varies,
+        lit: plan.lit,
         epochs: Program::Specialised(plan.clone()).epochs(),
     };
     let hiding = plan.hiding(handlers()).map(Program::Specialised).into_iter();

@@ -35,6 +35,7 @@ pub(super) fn source(uber: &Uber, handlers: &[EffectDefinition], shading: &Shadi
     text.push_str(&classes(uber));
     text.push_str(&TILE_INVOKERS.paragraph());
     text.push_str(&if uber.varies { moments(uber, handlers) } else { String::new() });
+    text.push_str(epochs::is_lit_here(uber.lit));
     text.push_str(&invoke(uber, "material", &[EffectKind::Material], handlers));
     text.push_str(&invoke(uber, "light", &[EffectKind::Light], handlers));
     text.push_str(&invoke(uber, "style", &[EffectKind::Scene, EffectKind::Post, EffectKind::Filter], handlers));

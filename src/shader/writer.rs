@@ -178,7 +178,7 @@ impl Writer<'_> {
     /// `styled`.
     pub(super) fn shade(&self, suffix: &str) -> String {
         let mut text = format!("fn shade{suffix}(point: ptr<function, Point>, classes: Classes) -> vec3f {{\n");
-        text.push_str(if self.plan.varies { MOMENT_HERE } else { "" });
+        text.push_str(if self.plan.varies { moment_here(self.plan.partly) } else { "" });
         if self.has(EffectKind::Material) {
             text.push_str("    var material = Material(as_is((*point).base), (*point).emission, vec3f(0.0), 32.0);\n");
             text.push_str(&self.statements(EffectKind::Material));
@@ -257,7 +257,13 @@ impl Writer<'_> {
 }
 
 /// Says at which moment what is shaded is seen.
-pub(super) const MOMENT_HERE: &str = "    moment_here = moment_of_layer_at(*point, classes);\n";
+pub(super) fn moment_here(partly: bool) -> &'static str {
+    match partly {
+        // Of several moments the first.
+        true => "    combination = 0u;\n    moment_here = moment_of_layer_at(*point, classes);\n",
+        false => "    moment_here = moment_of_layer_at(*point, classes);\n",
+    }
+}
 
 /// The end of `opacity_at`: of what is translucent itself, or there by halves, a lens shows that share.
 pub(super) fn opacity_end(has_clear_materials: bool, partly: bool) -> String {

@@ -436,6 +436,18 @@ pub const SUN_ROWS: &[Row<Sun>] = &[
             (false, _) => {}
         },
     ),
+    field!(
+        key(
+            "in_lenses",
+            Kind::Boolean,
+            "false",
+            "",
+            "With `follows_time`: whether the sun stands in time lenses where it does at the moments that show there, with its shadows. Each of these moments takes a frame.",
+            "true",
+        ),
+        Same,
+        |sun: Sun| sun.in_lenses
+    ),
     Row::<Sun>::new(
         key(
             "place",

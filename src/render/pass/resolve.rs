@@ -58,7 +58,7 @@ impl Pass for Resolve {
 
     fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<()> {
         let input = plan.input;
-        (input.is_summed() && input.sample + 1 == input.samples).then_some(())
+        (input.is_summed() && input.is_last()).then_some(())
     }
 
     fn add_keys(&self, _: Option<&()>, plan: &FramePlan, _: &Programs, keys: &mut Keys) {

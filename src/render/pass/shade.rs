@@ -254,9 +254,9 @@ impl Pass for Shade {
             group(frame.gpu, "lines and layers", &frame.pipelines.layout(&LINES), &entries)
         });
         let view = &target_of(frame).view;
-        let color = match plan.input.sample {
-            0 => cleared(view, wgpu::Color::TRANSPARENT),
-            _ => kept(view),
+        let color = match plan.input.is_first() {
+            true => cleared(view, wgpu::Color::TRANSPARENT),
+            false => kept(view),
         };
         let pass = PicturePass { name: "shade", color: Some(color), depth: read_depth(&targets.depth.view) };
         pass.record(frame, recording, |pass| {

@@ -132,6 +132,8 @@ impl Asked {
             masks: self.masks,
             sample: if self.masks { 0 } else { self.samples - 1 },
             samples: self.samples,
+            suns: &[],
+            sun_of: [0, 1],
             screen_occlusion: self.screen_occlusion,
             moved: &Moved::default(),
             chord_px: 1.0,

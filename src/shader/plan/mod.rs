@@ -54,6 +54,8 @@ pub struct Plan {
     pub moves: bool,
     /// Whether some look otherwise at other moments.
     pub varies: bool,
+    /// Whether the frame shows what is under the sun of one of several moments alone; then looks vary, too.
+    pub lit: bool,
     /// The time operators of its lenses, bottom lens first.
     pub epochs: Vec<PlanEpoch>,
     /// How places are told apart, for the techniques that are kept for reference; `None`: by accumulation.

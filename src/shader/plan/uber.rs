@@ -46,6 +46,8 @@ pub struct Uber {
     pub moves: bool,
     /// Whether some look otherwise at other moments.
     pub varies: bool,
+    /// Whether a frame shows what is under the sun of one of several moments alone.
+    pub lit: bool,
     /// The time operators of the scene's lenses, ascending, each once.
     pub epochs: Vec<u32>,
 }

@@ -5,4 +5,5 @@ mod costs;
 mod moving;
 mod partly;
 mod sun;
+mod suns;
 mod varying;
