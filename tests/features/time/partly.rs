@@ -247,6 +247,46 @@ fn layers_are_those_of_all_combinations_in_whole_years() {
 }
 
 #[test]
+fn both_ends_of_lifetimes_are_half_open_to_the_microsecond() {
+    let mut random = Random(31);
+    let all = panes(5, &mut random);
+    let stacks = stacks(&mut studio_of(&all), &all);
+    // Born and gone in one year, and at one instant; open at either end; without a date.
+    let dates: Vec<Years> =
+        vec![[Some(1900), Some(1901)], [Some(1900), Some(1900)], [None, Some(1900)], [Some(1900), None], [None; 2]];
+    let mut studio = dated(&all, &dates);
+    let text = |text: &str| Parameter::Text(text.to_owned());
+    let ball = Ball { center: DVec3::new(0.2, 5.0, 5.0), radius: 50.0, steps: vec![] };
+    for (at, there) in [
+        ("1899-12-31T23:59:59.999999", [false, false, true, false, true]),
+        ("1900", [true, false, false, true, true]),
+        ("1900-12-31T23:59:59.999999", [true, false, false, true, true]),
+        ("1901", [false, false, false, true, true]),
+    ] {
+        let mut of_scene = of_context(vec![]);
+        of_scene.moment = veduta::time::Interval::parse(at).expect("a time").begin;
+        let mut in_lens = of_context(vec![]);
+        in_lens.moment = Moment::of_year(1700);
+        let set = Handled { handler: "set".into(), parameters: [("at".to_owned(), text(at))].into() };
+        in_lens.lenses = vec![Lens { time: vec![set], ..ball.lens(0) }];
+        let expected: Vec<u32> = stacks
+            .iter()
+            .map(|stack| {
+                let seen = stack.iter().find(|(pane, _)| there[*pane]);
+                // Ids are counted from 1, in the order of the file.
+                seen.map_or(0, |(pane, _)| 1 + all.iter().position(|p| p.name == *pane).expect("a pane") as u32)
+            })
+            .collect();
+        for (scene, backend) in [&of_scene, &in_lens].into_iter().flat_map(|scene| BOTH.map(|backend| (scene, backend)))
+        {
+            let request = Request { aovs: ALL, backend, ..Request::plain(SIZE) };
+            let found = studio.render(scene, &request).expect("a picture").object_id.expect("ids");
+            assert!(found == expected, "{at}, {backend:?}, in a lens: {}", !scene.lenses.is_empty());
+        }
+    }
+}
+
+#[test]
 fn what_is_there_at_any_of_several_moments_is_whole() {
     let mut random = Random(5);
     let all = panes(4, &mut random);
