@@ -2,11 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use rustc_hash::FxHashMap;
-
 use crate::{
     city::{
         compare::{Comparison, Key, State},
+        join::Added,
         lifetime::{Dating, Lifetime, Lifetimes},
         load::error::LoadError,
         model::{Attribute, CityModel, Value},
@@ -95,10 +94,12 @@ impl CityModel {
     /// A word for each object that has one.
     fn add_words(&mut self, attribute: &str, words: &[Option<&str>]) {
         let name = self.strings.intern(attribute);
-        let mut added: FxHashMap<u32, Vec<Attribute>> = FxHashMap::default();
+        let mut added = Added::new(words.len());
         for (object, word) in (0..).zip(words).filter_map(|(object, word)| Some((object, (*word)?))) {
             let value = Value::String(self.strings.intern(word));
-            added.insert(object, vec![Attribute { name, value }]);
+            let first = added.values.len();
+            added.values.push(Attribute { name, value });
+            added.put(object, first);
         }
         self.add_attributes(&added);
     }
@@ -134,11 +135,13 @@ mod tests {
         let (begin, end) = (model.strings.intern("yearOfConstruction"), model.strings.intern("yearOfDemolition"));
         let years =
             [[Some(1600), None], [Some(1650), Some(1890)], [Some(1895), None], [Some(1850), Some(1860)], [None; 2]];
-        let mut dates: FxHashMap<u32, Vec<Attribute>> = FxHashMap::default();
+        let mut dates = Added::new(model.objects.len());
         for (object, of) in (0..).zip(years) {
             let named = [begin, end].into_iter().zip(of);
             let own = named.filter_map(|(name, year)| Some(Attribute { name, value: Value::Integer(year?) }));
-            dates.insert(object, own.collect());
+            let first = dates.values.len();
+            dates.values.extend(own);
+            dates.put(object, first);
         }
         model.add_attributes(&dates);
         let at = |year: i64| Moment::of_year(year).expect("a year");

@@ -81,6 +81,10 @@ fn every_effect_changes_the_inside_and_nothing_else() {
         let picture = stage.with(vec![used(&effect.name)]);
         let changed = (0..stage.inside.len()).filter(|&i| picture.rgba[i] != stage.plain.rgba[i]).count();
         let inside = stage.inside.iter().filter(|b| **b).count();
+        if effect.draws_coming() {
+            assert_eq!(changed, 0, "all is there already");
+            continue;
+        }
         assert!(changed * 20 > inside, "{} changed {changed} of {inside} pixels", effect.name);
         assert_eq!(picture.statistics.handlers.as_slice(), std::slice::from_ref(&effect.name));
         // What shows after something was hidden may lie elsewhere.

@@ -3,7 +3,7 @@
 mod table;
 mod timetable;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use rustc_hash::FxHashMap;
 
@@ -30,7 +30,10 @@ impl CityModel {
     pub fn join(&mut self, join: &Join) -> Result<(), LoadError> {
         let bytes = input::read(&join.file)?.bytes;
         let table = Table::new(&join.file, &bytes, &join.key)?;
-        let owners = self.owners(join)?;
+        let owners = match &join.attribute {
+            None => Owners::Ids(self.objects.iter().map(|object| &*object.id).zip(0..).collect()),
+            Some(name) => Owners::Keys(self.owners(&join.file, name)?),
+        };
         let mut facts = JoinFacts {
             file: join.file.clone(),
             key: table.key().to_owned(),
@@ -44,7 +47,7 @@ impl CityModel {
             attributes: table.columns().to_vec(),
         };
         let names: Vec<StringId> = table.columns().iter().map(|name| self.strings.intern(name)).collect();
-        let mut added: FxHashMap<u32, Vec<Attribute>> = FxHashMap::default();
+        let mut added = Added::new(self.objects.len());
         let valid = valid_columns(&table, join)?;
         let is_over_time = valid != [None, None];
         let mut over_time: FxHashMap<u32, Vec<Row>> = FxHashMap::default();
@@ -58,12 +61,12 @@ impl CityModel {
                 }
                 return;
             };
-            if !is_over_time && objects.iter().any(|object| added.contains_key(object)) {
+            if !is_over_time && objects.iter().any(|object| added.has(*object)) {
                 facts.repeated += 1;
                 return;
             }
             facts.joined += 1;
-            let mut own = Vec::with_capacity(names.len());
+            let first = added.values.len();
             let mut dates = [None; 2];
             cells.each(|column, cell| {
                 if let Some(end) = valid.iter().position(|of| *of == Some(column)) {
@@ -84,14 +87,16 @@ impl CityModel {
                     Cell::Array(json) => Value::Array(self.strings.intern(&json)),
                     Cell::Object(json) => Value::Object(self.strings.intern(&json)),
                 };
-                own.push(Attribute { name: names[column], value });
+                added.values.push(Attribute { name: names[column], value });
             });
-            for &object in objects {
-                match is_over_time {
-                    true => over_time.entry(object).or_default().push((dates[0], dates[1], own.clone())),
-                    false => _ = added.insert(object, own.clone()),
-                }
+            if is_over_time {
+                let own = added.values.split_off(first);
+                objects.iter().for_each(|object| {
+                    over_time.entry(*object).or_default().push((dates[0], dates[1], own.clone()));
+                });
+                return;
             }
+            objects.iter().for_each(|object| added.put(*object, first));
         })?;
         drop(owners);
         if let Some(error) = wrong {
@@ -100,38 +105,36 @@ impl CityModel {
         let is_date = |name: &String| valid.iter().flatten().any(|column| table.columns()[*column] == *name);
         facts.attributes.retain(|name| !is_date(name));
         self.add_histories(over_time, &mut added);
-        facts.objects = added.len() as u64;
+        facts.objects = added.count() as u64;
         self.add_attributes(&added);
         self.joins.push(facts);
         Ok(())
     }
 
     /// Adds what rows say over time, and to `added` what holds last.
-    fn add_histories(&mut self, over_time: FxHashMap<u32, Vec<Row>>, added: &mut FxHashMap<u32, Vec<Attribute>>) {
+    fn add_histories(&mut self, over_time: FxHashMap<u32, Vec<Row>>, added: &mut Added) {
         for (object, mut rows) in over_time {
             rows.sort_by_key(|(begin, ..)| *begin);
             let mut names: Vec<StringId> = rows.iter().flat_map(|row| &row.2).map(|own| own.name).collect();
             names.sort_unstable();
             names.dedup();
+            let first = added.values.len();
             for name in names {
                 let value = |own: &[Attribute]| own.iter().find(|own| own.name == name).map(|own| own.value);
                 let said: Vec<_> =
                     rows.iter().filter_map(|(begin, end, own)| Some((*begin, *end, value(own)?))).collect();
                 if let Some((.., last)) = said.last() {
-                    added.entry(object).or_default().push(Attribute { name, value: *last });
+                    added.values.push(Attribute { name, value: *last });
                 }
                 self.histories.entry(name).or_default().of.insert(object, breakpoints(&said));
             }
+            added.put(object, first);
         }
     }
 
-    /// The objects that a key may mean, in their order.
-    fn owners(&self, join: &Join) -> Result<FxHashMap<String, Vec<u32>>, LoadError> {
+    /// The objects that a value of an attribute may mean, in their order.
+    fn owners(&self, file: &Path, name: &str) -> Result<FxHashMap<String, Vec<u32>>, LoadError> {
         let mut owners: FxHashMap<String, Vec<u32>> = FxHashMap::default();
-        let Some(name) = &join.attribute else {
-            owners.extend(self.objects.iter().zip(0..).map(|(object, number)| (object.id.to_string(), vec![number])));
-            return Ok(owners);
-        };
         let id = self.strings.find(name);
         for number in 0..self.objects.len() as u32 {
             let own = self.attributes_of(number).iter().find(|attribute| Some(attribute.name) == id);
@@ -140,24 +143,26 @@ impl CityModel {
                 Value::Integer(number) => Some(number.to_string()),
                 _ => None,
             });
-            owners.entry_of(key, number);
+            if let Some(key) = key {
+                owners.entry(key).or_default().push(number);
+            }
         }
         match owners.is_empty() {
             false => Ok(owners),
             true => Err(LoadError::new(
-                &join.file,
+                file,
                 format!("is joined by the attribute \"{name}\", which no object has as a text or a whole number"),
             )),
         }
     }
 
     /// Puts attributes among those that objects have.
-    pub fn add_attributes(&mut self, added: &FxHashMap<u32, Vec<Attribute>>) {
-        if added.is_empty() {
+    pub fn add_attributes(&mut self, added: &Added) {
+        if added.count() == 0 {
             return;
         }
         let old = std::mem::take(&mut self.attributes);
-        let mut all = Vec::with_capacity(old.len() + added.values().map(Vec::len).sum::<usize>());
+        let mut all = Vec::with_capacity(old.len() + added.values.len());
         let mut moved = |range: &mut std::ops::Range<u32>, own: &[Attribute]| {
             let first = all.len() as u32;
             let before = &old[range.start as usize..range.end as usize];
@@ -167,12 +172,65 @@ impl CityModel {
             *range = first..all.len() as u32;
         };
         for (number, object) in (0..).zip(&mut self.objects) {
-            moved(&mut object.attributes, added.get(&number).map_or(&[], Vec::as_slice));
+            moved(&mut object.attributes, added.of(number));
         }
         for detail in &mut self.details {
             moved(&mut detail.attributes, &[]);
         }
         self.attributes = all;
+    }
+}
+
+/// Which objects rows are of.
+enum Owners<'a> {
+    /// By their ids.
+    Ids(FxHashMap<&'a str, u32>),
+    /// By an attribute.
+    Keys(FxHashMap<String, Vec<u32>>),
+}
+
+impl Owners<'_> {
+    fn get(&self, key: &str) -> Option<&[u32]> {
+        match self {
+            Self::Ids(ids) => ids.get(key).map(std::slice::from_ref),
+            Self::Keys(keys) => keys.get(key).map(Vec::as_slice),
+        }
+    }
+}
+
+/// Attributes that objects get.
+#[derive(Debug)]
+pub struct Added {
+    /// All, those of an object one after the other.
+    pub values: Vec<Attribute>,
+    /// Which are of each object; `None`: it gets none.
+    of: Vec<Option<(u32, u32)>>,
+}
+
+impl Added {
+    /// None, for so many objects.
+    pub fn new(objects: usize) -> Self {
+        Self { values: Vec::new(), of: vec![None; objects] }
+    }
+
+    /// Has an object get what was added from a place on.
+    pub fn put(&mut self, object: u32, first: usize) {
+        self.of[object as usize] = Some((first as u32, self.values.len() as u32));
+    }
+
+    /// Whether an object gets some.
+    fn has(&self, object: u32) -> bool {
+        self.of[object as usize].is_some()
+    }
+
+    /// Those of an object.
+    fn of(&self, object: u32) -> &[Attribute] {
+        self.of[object as usize].map_or(&[], |(first, end)| &self.values[first as usize..end as usize])
+    }
+
+    /// Objects that get some.
+    fn count(&self) -> usize {
+        self.of.iter().flatten().count()
     }
 }
 
@@ -199,19 +257,6 @@ fn date(cell: &Cell) -> Result<Option<Moment>, String> {
         _ => return Err("must be a time: \"1890\", \"1890-05-03\" or \"1890-05-03T14:00\"".to_owned()),
     };
     Interval::parse(&text).map(|interval| interval.begin)
-}
-
-/// Notes an owner of a key.
-trait Owners {
-    fn entry_of(&mut self, key: Option<String>, number: u32);
-}
-
-impl Owners for FxHashMap<String, Vec<u32>> {
-    fn entry_of(&mut self, key: Option<String>, number: u32) {
-        if let Some(key) = key {
-            self.entry(key).or_default().push(number);
-        }
-    }
 }
 
 /// Joins all side tables of a city, in order.

@@ -200,10 +200,12 @@ fn cell_of(text: &str) -> Option<Cell<'_>> {
         "true" | "True" | "TRUE" => Cell::Boolean(true),
         "false" | "False" | "FALSE" => Cell::Boolean(false),
         _ if is_code || !is_number => Cell::Text(text),
-        _ => match (text.parse::<i64>(), text.parse::<f64>()) {
-            (Ok(whole), _) => Cell::Integer(whole),
-            (_, Ok(number)) if number.is_finite() => Cell::Number(number),
-            _ => Cell::Text(text),
+        _ => match text.parse::<i64>() {
+            Ok(whole) => Cell::Integer(whole),
+            Err(_) => match text.parse::<f64>() {
+                Ok(number) if number.is_finite() => Cell::Number(number),
+                _ => Cell::Text(text),
+            },
         },
     })
 }
