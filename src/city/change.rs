@@ -101,7 +101,7 @@ impl CityModel {
             added.values.push(Attribute { name, value });
             added.put(object, first);
         }
-        self.add_attributes(&added);
+        self.add_attributes(added);
     }
 }
 
@@ -143,7 +143,7 @@ mod tests {
             dates.values.extend(own);
             dates.put(object, first);
         }
-        model.add_attributes(&dates);
+        model.add_attributes(dates);
         let at = |year: i64| Moment::of_year(year).expect("a year");
         model.add_change("change", [at(1800), at(1900)], &Dating::default()).expect("dates");
         assert_eq!(words(&model, "change"), ["kept", "removed", "added", "at neither", "-"]);

@@ -12,7 +12,7 @@ use crate::{
         history::breakpoints,
         join::table::{Cell, Table},
         load::{error::LoadError, input},
-        model::{Attribute, CityModel, StringId, Value},
+        model::{Attribute, CityModel, CityObject, StringId, Value},
         side_table::{Join, JoinFacts},
     },
     time::{Interval, Moment},
@@ -30,8 +30,8 @@ impl CityModel {
     pub fn join(&mut self, join: &Join) -> Result<(), LoadError> {
         let bytes = input::read(&join.file)?.bytes;
         let table = Table::new(&join.file, &bytes, &join.key)?;
-        let owners = match &join.attribute {
-            None => Owners::Ids(self.objects.iter().map(|object| &*object.id).zip(0..).collect()),
+        let mut owners = match &join.attribute {
+            None => Owners::Ids(Ids { objects: &self.objects, next: 0, numbers: None, found: 0 }),
             Some(name) => Owners::Keys(self.owners(&join.file, name)?),
         };
         let mut facts = JoinFacts {
@@ -106,7 +106,7 @@ impl CityModel {
         facts.attributes.retain(|name| !is_date(name));
         self.add_histories(over_time, &mut added);
         facts.objects = added.count() as u64;
-        self.add_attributes(&added);
+        self.add_attributes(added);
         self.joins.push(facts);
         Ok(())
     }
@@ -157,8 +157,16 @@ impl CityModel {
     }
 
     /// Puts attributes among those that objects have.
-    pub fn add_attributes(&mut self, added: &Added) {
+    pub fn add_attributes(&mut self, added: Added) {
         if added.count() == 0 {
+            return;
+        }
+        if self.attributes.is_empty() {
+            // Nothing is there that they could stand beside.
+            for (object, own) in self.objects.iter_mut().zip(&added.of) {
+                object.attributes = own.map_or(0..0, |(first, end)| first..end);
+            }
+            self.attributes = added.values;
             return;
         }
         let old = std::mem::take(&mut self.attributes);
@@ -181,18 +189,42 @@ impl CityModel {
     }
 }
 
+/// Objects by their ids: of rows that stand in the order of objects the next one is asked first.
+struct Ids<'a> {
+    objects: &'a [CityObject],
+    next: usize,
+    /// Once a row does not.
+    numbers: Option<FxHashMap<&'a str, u32>>,
+    found: u32,
+}
+
+impl Ids<'_> {
+    fn find(&mut self, key: &str) -> Option<&u32> {
+        let is_next = self.objects.get(self.next).is_some_and(|object| *object.id == *key);
+        self.found = match is_next {
+            true => self.next as u32,
+            false => {
+                let all = || self.objects.iter().map(|object| &*object.id).zip(0..).collect();
+                *self.numbers.get_or_insert_with(all).get(key)?
+            }
+        };
+        self.next = self.found as usize + 1;
+        Some(&self.found)
+    }
+}
+
 /// Which objects rows are of.
 enum Owners<'a> {
     /// By their ids.
-    Ids(FxHashMap<&'a str, u32>),
+    Ids(Ids<'a>),
     /// By an attribute.
     Keys(FxHashMap<String, Vec<u32>>),
 }
 
 impl Owners<'_> {
-    fn get(&self, key: &str) -> Option<&[u32]> {
+    fn get(&mut self, key: &str) -> Option<&[u32]> {
         match self {
-            Self::Ids(ids) => ids.get(key).map(std::slice::from_ref),
+            Self::Ids(ids) => ids.find(key).map(std::slice::from_ref),
             Self::Keys(keys) => keys.get(key).map(Vec::as_slice),
         }
     }
