@@ -19,7 +19,7 @@ use veduta::{
 const SIZE: [u32; 2] = [200, 125];
 const THOROUGH_SIZE: [u32; 2] = [120, 75];
 /// Scenes that every run draws, of as many families, and those of a thorough one, which draws all of a family.
-const SCENES: u64 = 5;
+const SCENES: u64 = 4;
 const ALL_SCENES: u64 = 10_000;
 
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Result<Picture, String> {
@@ -51,7 +51,7 @@ fn differences(one: &Picture, other: &Picture) -> Vec<&'static str> {
 
 /// Whether both draw the same to the byte; `None`: neither can draw it.
 fn same_by_both(studio: &mut Studio, text: &str) -> Result<Option<bool>, String> {
-    let scene = parse(text, "random.toml", &Options::default()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let scene = parse(text, "random.toml", &outside()).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let one = drawn(studio, &scene, Backend::Specialised);
     let other = drawn(studio, &scene, Backend::Uber);
     match (one, other) {
@@ -85,7 +85,7 @@ fn seeds() -> Vec<u64> {
 
 #[test]
 fn both_back_ends_draw_random_scenes_the_same() {
-    let wanted = Wanted { lenses: [2, 4], deformations: true };
+    let wanted = Wanted { lenses: [2, 4], deformations: true, history: None };
     let cities = ["builtin:square", "builtin:town"];
     let mut studios = cities.map(|city| of_scene(&parse_city(city)));
     let (mut count, mut between, mut wrong) = (0, 0, Vec::new());
@@ -111,6 +111,69 @@ fn both_back_ends_draw_random_scenes_the_same() {
     println!("{count} of {total} scenes drawn, {between} of them with colours between two steps");
     assert!(wrong.is_empty(), "{} of {total} scenes:\n{}", wrong.len(), wrong.join("\n"));
     assert!(count * 10 > total * 8, "{count} of {total} scenes can be drawn");
+}
+
+/// Keys of `[city]` by which things of the square move and change over centuries; the tables stay as long as the tests run.
+fn history() -> &'static str {
+    let model = of_scene(&parse_city("builtin:square")).model;
+    let houses: Vec<&str> =
+        model.objects.iter().filter(|o| o.parents.is_empty() && !o.class.is_ground()).map(|o| &*o.id).collect();
+    let mut uses = "id,use,since,until\n".to_owned();
+    for (i, id) in houses.iter().enumerate().filter(|(i, _)| i % 2 == 0) {
+        uses += &format!("{id},home,,{}\n{id},{},{},\n", 1600 + i, ["shop", "mill"][i / 2 % 2], 1650 + 3 * i);
+    }
+    let mut ways = "id,t,x,y,z,yaw\n".to_owned();
+    for (i, id) in houses.iter().enumerate().filter(|(i, _)| i % 9 == 0) {
+        let bounds = model.family_bounds(model.find_object(id).expect("it"));
+        let (at, by) = (bounds.center().with_z(bounds.min.z), 20.0 - (i % 5) as f64 * 10.0);
+        ways += &format!(
+            "{id},1550,{},{},{},0\n{id},1980,{},{},{},{}\n",
+            at.x,
+            at.y,
+            at.z,
+            at.x + by,
+            at.y - by,
+            at.z + 1.0,
+            7 * i
+        );
+    }
+    let folder = std::env::temp_dir().join(format!("veduta-history-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let [uses_file, ways_file] = [("uses.csv", uses), ("ways.csv", ways)].map(|(name, text)| {
+        let file = folder.join(name);
+        std::fs::write(&file, text).expect("a file");
+        file.display().to_string()
+    });
+    format!("timetables = [{ways_file:?}]\njoin = [{{ file = {uses_file:?}, from = \"since\", until = \"until\" }}]")
+        .leak()
+}
+
+#[test]
+fn both_back_ends_draw_random_moments_the_same() {
+    let history = history();
+    let wanted = Wanted { lenses: [2, 4], deformations: true, history: Some(history) };
+    let city = format!("veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n{history}\n");
+    let mut studio = of_scene(&parse(&city, "city.toml", &outside()).unwrap_or_else(|error| panic!("{error}")));
+    let (mut count, mut wrong) = (0, Vec::new());
+    // Every family of an ordinary run is another than that of scenes without time.
+    let all: Vec<u64> = seeds().into_iter().map(|seed| seed + 1000 * FAMILY).collect();
+    for seed in &all {
+        let text = scene(*seed, "builtin:square", wanted);
+        match same_by_both(&mut studio, &text) {
+            Ok(drawn) => count += usize::from(drawn.is_some()),
+            Err(difference) => {
+                println!("seed {seed}: {difference}");
+                wrong.push(format!("seed {seed}: {difference}"));
+            }
+        }
+    }
+    println!("{count} of {} scenes drawn", all.len());
+    assert!(wrong.is_empty(), "{} of {} scenes:\n{}", wrong.len(), all.len(), wrong.join("\n"));
+    assert!(count * 10 > all.len() * 7, "{count} of {} scenes can be drawn", all.len());
+}
+
+fn outside() -> Options {
+    Options { allow_outside: true, ..Options::default() }
 }
 
 fn parse_city(city: &str) -> Scene {
@@ -179,7 +242,7 @@ fn both_back_ends_draw_random_scenes_of_glass_the_same() {
         _ => (0..4).map(|family| 3 * FAMILY + family * FAMILY).collect(),
     };
     for seed in seeds {
-        let text = scene(seed, "glass.city.json", Wanted { lenses: [2, 4], deformations: true });
+        let text = scene(seed, "glass.city.json", Wanted { lenses: [2, 4], deformations: true, history: None });
         match same_by_both(&mut studio, &text) {
             Ok(drawn) => count += usize::from(drawn.is_some()),
             Err(difference) => wrong.push(format!("seed {seed}: {difference}")),

@@ -148,7 +148,11 @@ fn scenes(folder: &Path) -> Vec<PathBuf> {
     for family in FAMILIES {
         let path = folder.join(format!("random-{family}.toml"));
         let city = ["builtin:square", "builtin:town"][family as usize % 2];
-        std::fs::write(&path, scene(family * FAMILY, city, Wanted { lenses: [2, 4], deformations: true })).unwrap();
+        std::fs::write(
+            &path,
+            scene(family * FAMILY, city, Wanted { lenses: [2, 4], deformations: true, history: None }),
+        )
+        .unwrap();
         all.push(path);
     }
     all

@@ -18,6 +18,8 @@ pub struct Wanted {
     pub lenses: [usize; 2],
     /// Whether there may be kinds that move the city.
     pub deformations: bool,
+    /// Keys of `[city]` that give it a history; then there are moments, and lenses that show others.
+    pub history: Option<&'static str>,
 }
 
 /// Scenes of a family, one after the other in number.
@@ -29,6 +31,8 @@ struct Dice {
     choices: Random,
     /// Places, sizes, shares.
     numbers: Random,
+    /// Kinds of time operators, of a family.
+    times: Random,
 }
 
 impl Dice {
@@ -51,12 +55,17 @@ impl Dice {
 
 /// A scene file over a city around the origin.
 pub fn scene(seed: u64, city: &str, wanted: Wanted) -> String {
-    let dice = &mut Dice { choices: Random::new(seed / FAMILY, 0), numbers: Random::new(seed, 1) };
+    let dice = &mut Dice {
+        choices: Random::new(seed / FAMILY, 0),
+        numbers: Random::new(seed, 1),
+        times: Random::new(seed / FAMILY, 2),
+    };
     let angle = dice.number(0.0, 6.25);
     let (distance, height) = (dice.number(40.0, 160.0), dice.number(4.0, 140.0));
+    let (history, moment, sun) = history(dice, wanted);
     let mut text = format!(
-        "veduta = 1\n[city]\nfiles = [\"{city}\"]\n[camera]\neye = [{:.2}, {:.2}, {height:.2}]\ntarget = [{:.2}, {:.2}, 8]\nfov_deg = 55\n\
-         [sun]\nshadows = {}\n[[poi]]\nname = \"p\"\nat = [{:.2}, {:.2}, {:.2}]\n",
+        "veduta = 1\n[city]\nfiles = [\"{city}\"]\n{history}{moment}[camera]\neye = [{:.2}, {:.2}, {height:.2}]\ntarget = [{:.2}, {:.2}, 8]\nfov_deg = 55\n\
+         [sun]\n{sun}shadows = {}\n[[poi]]\nname = \"p\"\nat = [{:.2}, {:.2}, {:.2}]\n",
         distance * angle.cos(),
         distance * angle.sin(),
         dice.number(-20.0, 20.0),
@@ -72,8 +81,43 @@ pub fn scene(seed: u64, city: &str, wanted: Wanted) -> String {
     let [least, most] = wanted.lenses;
     for i in 0..least + dice.below(most - least + 1) {
         text += &lens(dice, i, wanted);
+        if wanted.history.is_some() && !dice.times.once_in(3) {
+            let _ = writeln!(text, "time = [{}]", operators(dice, i));
+        }
     }
     text
+}
+
+/// Of `[city]`, `[time]` and `[sun]` what is of time.
+fn history(dice: &mut Dice, wanted: Wanted) -> (String, String, &'static str) {
+    let Some(history) = wanted.history else { return Default::default() };
+    let undated = *dice.times.pick(&["show", "hide", "ghost"]);
+    let mut moment = format!("[time]\nat = \"{}\"\n", year(dice));
+    if dice.times.once_in(3) {
+        let _ = writeln!(moment, "steps = [{}]", operators(dice, 0));
+    }
+    let is_lit = dice.times.once_in(6);
+    let sun = if is_lit { "follows_time = true\nin_lenses = true\nplace = [52, 4]\n" } else { "" };
+    (format!("undated = \"{undated}\"\n{history}\n"), moment, sun)
+}
+
+fn year(dice: &mut Dice) -> String {
+    format!("{:.0}-06-01T10:00", dice.number(1500.0, 2020.0))
+}
+
+/// One to three time operators of a lens, by its number: links go to lenses below alone.
+fn operators(dice: &mut Dice, number: usize) -> String {
+    let by = |dice: &mut Dice| format!("{:.0} years", dice.number(-200.0, 200.0));
+    let one = |dice: &mut Dice| match dice.times.below(8) {
+        0 | 1 => format!("{{ op = \"set\", at = \"{}\" }}", year(dice)),
+        2 | 3 => format!("{{ op = \"shift\", by = \"{}\" }}", by(dice)),
+        4 => format!("{{ op = \"aggregate\", at = [\"{}\", \"{}\"], weights = [1, 2] }}", year(dice), by(dice)),
+        5 => format!("{{ op = \"aggregate\", at = [\"0 s\", \"{}\"], show = \"any\" }}", by(dice)),
+        6 => "{ op = \"ghost\", past = \"120 years\", future = \"90 years\" }".to_owned(),
+        _ if number > 0 => format!("{{ op = \"link\", to = \"l{}\", by = \"{}\" }}", number - 1, by(dice)),
+        _ => "{ op = \"floor\", unit = \"100 years\" }".to_owned(),
+    };
+    (0..=dice.times.below(2)).map(|_| one(dice)).collect::<Vec<_>>().join(", ")
 }
 
 fn lens(dice: &mut Dice, number: usize, wanted: Wanted) -> String {
@@ -82,7 +126,11 @@ fn lens(dice: &mut Dice, number: usize, wanted: Wanted) -> String {
     let body = *dice.pick(&["outline", "outline", "shell", "halo", "none"]);
     match dice.below(kinds) {
         0..4 => {
-            let _ = writeln!(text, "kind = \"color\"\nshape = {}\neffects = [{}]", shape(dice, 2), steps(dice, 3));
+            let (shape, mut effects) = (shape(dice, 2), steps(dice, 3));
+            if wanted.history.is_some() && dice.times.once_in(2) {
+                effects = "{ effect = \"thematic\", attribute = \"use\" }".to_owned();
+            }
+            let _ = writeln!(text, "kind = \"color\"\nshape = {shape}\neffects = [{effects}]");
             if dice.once_in(3) {
                 let _ = writeln!(text, "border = {}", border(dice));
             }

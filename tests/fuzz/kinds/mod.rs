@@ -76,7 +76,7 @@ fn files_of(folder: &str, is_of_it: impl Fn(&str) -> bool) -> Vec<Seed> {
 
 /// Random scenes, of as many families.
 fn random_scenes(count: u64) -> Vec<Seed> {
-    let wanted = Wanted { lenses: [1, 4], deformations: true };
+    let wanted = Wanted { lenses: [1, 4], deformations: true, history: None };
     let scenes = (0..count).map(|i| Seed {
         name: format!("random-{i}.toml"),
         bytes: scene(i * FAMILY, "builtin:square", wanted).into_bytes(),
