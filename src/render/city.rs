@@ -237,6 +237,23 @@ pub struct Shown<'a> {
     pub is_lit_as_before: bool,
     /// Whether walls without textures have storeys and windows.
     pub facades: bool,
+    /// The box around what else the scene shows of this city, which is drawn beside it, metres.
+    pub beside: Aabb,
+}
+
+impl<'a> Shown<'a> {
+    /// Geometries of a model, and nothing else.
+    pub fn of(model: &'a CityModel, geometries: &'a [u32]) -> Self {
+        Self {
+            model,
+            geometries,
+            coplanar: &[],
+            ground: None,
+            is_lit_as_before: false,
+            facades: false,
+            beside: Aabb::EMPTY,
+        }
+    }
 }
 
 /// Triangles gathered for one section.
@@ -433,7 +450,7 @@ impl CityBuffers {
             }
         }
         let mut sections = Vec::new();
-        let mut bounds = extent;
+        let mut bounds = extent.union(shown.beside);
         if let Some(ground) = shown.ground {
             bounds = bounds.union(gather_ground(ground, &mut table, &mut plain[0]));
         }
@@ -697,7 +714,7 @@ fn gather_blocks(
     tiles.retain(|(cell, _)| *cell != NO_CELL);
     tiles.sort_unstable();
     let all: Vec<u32> = (0..model.geometries.len() as u32).collect();
-    let shown = Shown { model, geometries: &all, coplanar: &[], ground: None, is_lit_as_before: false, facades: false };
+    let shown = Shown::of(model, &all);
     let shells = closed_shells(&shown, tiles.iter().map(|(_, tile)| *tile), middle);
     let textures = Textures::none();
     let mut table = SurfaceTable::new(model, &textures, &shells);

@@ -175,12 +175,10 @@ impl Contents {
         }
         for city in wanted.iter().filter_map(|w| w.city.as_ref()) {
             let plain = Shown {
-                model: &city.model,
-                geometries: &city.geometries,
-                coplanar: &[],
                 is_lit_as_before: city.is_lit_as_before,
                 facades,
                 ground: if city.is_own && !city.moves && !city.is_derived() { ground } else { city.ground.as_ref() },
+                ..Shown::of(&city.model, &city.geometries)
             };
             if !self.cities.iter().any(|(id, _)| *id == city.id) {
                 let coplanar = stacked_triangles(&city.model, &city.geometries, &city.heights);

@@ -23,6 +23,8 @@ pub const MOST_TURNS: usize = 62;
 #[derive(Debug, Default)]
 pub struct MovingObjects {
     all: Vec<MovingObject>,
+    /// The city's geometries that stay where they are.
+    still: Vec<u32>,
 }
 
 /// An object that moves, with its parts.
@@ -48,10 +50,10 @@ pub struct Moving {
 }
 
 impl MovingObjects {
-    /// Those of a city, and which of its geometries stay where they are.
-    pub fn new(model: &Arc<CityModel>, geometries: &[u32]) -> (Self, Vec<u32>) {
+    /// Those of a city of which these geometries are shown.
+    pub fn new(model: &Arc<CityModel>, geometries: &[u32]) -> Self {
         if model.moves.is_empty() {
-            return (Self::default(), geometries.to_vec());
+            return Self::default();
         }
         let mut own: Vec<Vec<u32>> = vec![Vec::new(); model.moves.len()];
         let mut still = Vec::new();
@@ -83,7 +85,16 @@ impl MovingObjects {
             };
             MovingObject { keyframes, city: Arc::new(city), bounds }
         });
-        (Self { all: all.collect() }, still)
+        Self { all: all.collect(), still }
+    }
+
+    /// What of a city's geometries is drawn where its file has it, and the box around what is drawn beside that, metres. `is_still`: nothing
+    /// that moves is among it.
+    pub fn drawn_still<'a>(&'a self, is_still: bool, all: &'a [u32]) -> (&'a [u32], Aabb) {
+        match is_still {
+            true => (&self.still, self.all.iter().fold(Aabb::EMPTY, |all, object| all.union(object.bounds))),
+            false => (all, Aabb::EMPTY),
+        }
     }
 
     /// The objects of the model that move, parts by themselves.

@@ -184,17 +184,10 @@ pub struct Studio {
     footprints: OwnFootprints,
     /// When its objects, and those of contents, are there.
     pub(super) lifetimes: Arc<KnownLifetimes>,
-    /// What of the city never moves.
-    still: Vec<u32>,
-    /// Whether that alone is drawn where its file has it: what moves is drawn beside it where a moment shows.
-    is_still: bool,
-    /// What moves of it.
+    /// What moves of the city.
     moving: Arc<MovingObjects>,
-}
-
-/// The geometries that are drawn where the city's file has them: those that never move alone, or all.
-fn drawn_still<'a>(is_still: bool, still: &'a [u32], all: &'a [u32]) -> &'a [u32] {
-    if is_still { still } else { all }
+    /// Whether the rest is drawn where its file has it, and what moves beside that: since a moment was asked for.
+    is_still: bool,
 }
 
 impl Studio {
@@ -210,17 +203,10 @@ impl Studio {
         };
         let geometries = shown_geometries(&model, cap);
         let ground = spec.ground.then(|| plain_ground(&model, &geometries)).flatten().map(Arc::new);
-        let (moving, still) = MovingObjects::new(&model, &geometries);
+        let moving = MovingObjects::new(&model, &geometries);
         let coplanar = coplanar_triangles(&model, &geometries);
         let mut renderer = Renderer::new(gpu)?;
-        let shown = Shown {
-            model: &model,
-            geometries: &geometries,
-            coplanar: &coplanar,
-            ground: ground.as_deref(),
-            is_lit_as_before: false,
-            facades: false,
-        };
+        let shown = Shown { coplanar: &coplanar, ground: ground.as_deref(), ..Shown::of(&model, &geometries) };
         renderer.set_city(&shown, None)?;
         let mut objects: Vec<u32> = geometries.iter().map(|&g| model.geometries[g as usize].object).collect();
         objects.sort_unstable();
@@ -230,9 +216,8 @@ impl Studio {
             objects: objects.len() as u64,
             model,
             geometries,
-            still,
-            is_still: false,
             moving: Arc::new(moving),
+            is_still: false,
             ground,
             load: stats::Load::default(),
             backend: Backend::default(),
@@ -526,18 +511,12 @@ impl Studio {
 
     /// Puts the city on the GPU anew, with block models or without.
     fn set_city(&mut self, facades: bool, blocks: bool) -> Result<(), RenderError> {
-        let derived = || {
-            derive(
-                &self.model,
-                drawn_still(self.is_still, &self.still, &self.geometries),
-                &Derive { form: Form::Lod1, parts: true },
-            )
-        };
+        let (geometries, beside) = self.moving.drawn_still(self.is_still, &self.geometries);
+        let derived = || derive(&self.model, geometries, &Derive { form: Form::Lod1, parts: true });
         let blocks = blocks.then(derived);
-        let coplanar = coplanar_triangles(&self.model, drawn_still(self.is_still, &self.still, &self.geometries));
-        let (model, geometries, ground) =
-            (&self.model, drawn_still(self.is_still, &self.still, &self.geometries), self.ground.as_deref());
-        let shown = Shown { model, geometries, coplanar: &coplanar, ground, is_lit_as_before: false, facades };
+        let coplanar = coplanar_triangles(&self.model, geometries);
+        let ground = self.ground.as_deref();
+        let shown = Shown { coplanar: &coplanar, ground, facades, beside, ..Shown::of(&self.model, geometries) };
         self.renderer.set_city(&shown, blocks.as_ref().map(|blocks| &blocks.model))?;
         self.insets.clear();
         Ok(())
@@ -547,9 +526,9 @@ impl Studio {
     /// wanted.
     fn find_cities(&mut self, resolved: &Resolved, facades: bool) -> Result<(), RenderError> {
         let edges = resolved.operations.draws_lines();
-        let is_still = resolved.operations.moves;
-        let is_other = self.is_still != is_still;
-        self.is_still = is_still;
+        // Once something was asked to move it stays so: views of one picture, with moments and without, are drawn from one city.
+        let is_other = resolved.operations.moves && !self.is_still;
+        self.is_still |= is_other;
         let stale = self.renderer.city().filter(|city| is_other || city.has_facades != facades);
         let stale = stale.map(|city| city.has_blocks);
         if let Some(has_blocks) = stale {
@@ -559,9 +538,9 @@ impl Studio {
         if self.renderer.has_edges() || !edges {
             return Ok(());
         }
-        let (model, geometries, ground) =
-            (&self.model, drawn_still(self.is_still, &self.still, &self.geometries), self.ground.as_deref());
-        let shown = Shown { model, geometries, coplanar: &[], ground, is_lit_as_before: false, facades };
+        let (geometries, beside) = self.moving.drawn_still(self.is_still, &self.geometries);
+        let ground = self.ground.as_deref();
+        let shown = Shown { ground, facades, beside, ..Shown::of(&self.model, geometries) };
         Ok(self.renderer.set_edges(&shown)?)
     }
 
@@ -601,6 +580,7 @@ impl Studio {
             reading: &self.reading,
             lifetimes: &self.lifetimes,
             moving: &self.moving,
+            is_still: self.is_still,
         }
     }
 

@@ -48,6 +48,8 @@ pub struct Renderer {
     pub images: Images,
     pub(super) pipelines: Pipelines,
     pub(super) city: Option<CityOnGpu>,
+    /// How many cities were put on the GPU.
+    cities_set: u64,
     /// What is kept for the view that is drawn.
     pub(super) view: ViewState,
     deforming: Deforming,
@@ -63,6 +65,7 @@ impl Renderer {
             images: Images::new(&gpu),
             pipelines: Pipelines::new(&gpu),
             city: None,
+            cities_set: 0,
             view: ViewState::new(&gpu)?,
             deforming: Deforming::default(),
             ran: Vec::new(),
@@ -79,7 +82,8 @@ impl Renderer {
     pub fn set_city(&mut self, shown: &Shown, blocks: Option<&CityModel>) -> Result<(), GpuError> {
         self.city = None;
         self.deforming.begin_city();
-        self.view.begin_city();
+        self.cities_set += 1;
+        self.view.begin_city(self.cities_set);
         self.city = Some(CityOnGpu::new(&self.gpu, &self.pipelines, shown, blocks)?);
         Ok(())
     }
@@ -100,6 +104,8 @@ impl Renderer {
         facades: bool,
     ) -> Result<(), GpuError> {
         let Some(own) = &self.city else { return Ok(()) };
+        // Since the view was drawn last another city may have been put there for another view.
+        self.view.begin_city(self.cities_set);
         let how = ContentLook { ground, edges, facades };
         if self.view.contents.set(&self.gpu, &self.pipelines, own, wanted, how)? {
             self.view.change_surfaces();
@@ -209,9 +215,9 @@ impl Renderer {
     }
 
     fn draw_frame(&mut self, input: &FrameInput, timer: Option<&mut Timer>) -> Result<Vec<PassRecord>, GpuError> {
-        let Self { gpu, settings, images, pipelines, city, view, deforming, ran } = self;
+        let Self { gpu, settings, images, pipelines, city, view, deforming, ran, .. } = self;
         let Some(city) = city else { return Ok(Vec::new()) };
-        let ViewState { contents, deformed, targets, shared, passes, own_sprites } = view;
+        let ViewState { contents, deformed, targets, shared, passes, own_sprites, .. } = view;
         pipelines.begin_frame(settings.most_pipelines);
         shared.world += u64::from(deforming.fit(gpu, pipelines, city, contents, deformed, input)?);
         let cities = Cities { own: city, deformed, contents };

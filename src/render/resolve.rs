@@ -83,6 +83,8 @@ pub(super) struct Surroundings<'a> {
     pub lifetimes: &'a KnownLifetimes,
     /// What moves of the city.
     pub moving: &'a MovingObjects,
+    /// Whether that is drawn beside the rest of the city whatever shows.
+    pub is_still: bool,
 }
 
 /// What a scene is in one view.
@@ -321,10 +323,10 @@ impl Surroundings<'_> {
     /// Which moments show, and when objects are there.
     fn time(&self, scene: &Scene, contents: &SceneContents) -> Result<SceneTime, ResolveError> {
         let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;
-        if !epochs.is_any() {
+        let moves = !self.moving.is_empty() && (epochs.is_any() || self.is_still);
+        if !epochs.is_any() && !moves {
             return Ok(SceneTime::default());
         }
-        let moves = !self.moving.is_empty();
         let dating = &scene.city.dating;
         let own = self.lifetimes.of(self.model, dating).map_err(ResolveError::Scene)?;
         // Data sets that lenses show may have other attributes, or none.

@@ -15,6 +15,8 @@ use crate::{
 /// The state of a view: with one each, views that take turns neither make nor upload anything as long as nothing changes.
 #[derive(Debug)]
 pub(super) struct ViewState {
+    /// Which of the cities that were put on the GPU the rest is of.
+    city: u64,
     /// Contents of lenses.
     pub contents: Contents,
     /// What deformations make of the city in this view, and of contents.
@@ -30,6 +32,7 @@ impl ViewState {
     /// Nothing yet.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         Ok(Self {
+            city: 0,
             contents: Contents::default(),
             deformed: Vec::new(),
             targets: None,
@@ -39,8 +42,12 @@ impl ViewState {
         })
     }
 
-    /// Another city is there now.
-    pub fn begin_city(&mut self) {
+    /// The city that was put on the GPU as the so-manieth is there now: of another, nothing is kept.
+    pub fn begin_city(&mut self, number: u64) {
+        if self.city == number {
+            return;
+        }
+        self.city = number;
         self.deformed.clear();
         self.contents = Contents::default();
         self.passes.layers.forget();

@@ -110,14 +110,7 @@ pub fn set_city(studio: &mut Studio, panes: &[Pane]) {
     std::fs::remove_file(path).expect("the temporary file");
     let geometries = shown_geometries(&model, None);
     let coplanar = coplanar_triangles(&model, &geometries);
-    let shown = Shown {
-        model: &model,
-        geometries: &geometries,
-        coplanar: &coplanar,
-        ground: None,
-        is_lit_as_before: false,
-        facades: false,
-    };
+    let shown = Shown { coplanar: &coplanar, ..Shown::of(&model, &geometries) };
     studio.renderer.set_city(&shown, None).expect("the city fits");
     (studio.model, studio.geometries) = (Arc::new(model), geometries);
 }

@@ -82,6 +82,11 @@ impl CityModel {
     }
 }
 
+/// How far from the origin anything may be, metres.
+const FARTHEST_M: f64 = 1e9;
+/// The smallest scale.
+const LEAST_SCALE: f64 = 1e-6;
+
 /// Which of [`COLUMNS`] each column of a table is.
 fn columns_of(file: &Path, table: &Table) -> Result<Vec<Option<usize>>, LoadError> {
     let known = |name: &String| COLUMNS.iter().position(|(column, _)| column == name);
@@ -125,8 +130,11 @@ fn keyframe(columns: &[Option<usize>], cells: &Cells) -> Result<Keyframe, String
     let number = |which: usize| values[which].ok_or_else(|| format!("{} is missing", COLUMNS[which].0));
     let place = DVec3::new(number(1)?, number(2)?, number(3)?);
     let (yaw, scale) = (number(4)?.to_radians(), number(5)?);
-    if scale <= 0.0 || !place.is_finite() || !yaw.is_finite() || !scale.is_finite() {
-        return Err(format!("scale must be more than 0, is {scale}"));
+    if place.abs().max_element() > FARTHEST_M || yaw.abs() > FARTHEST_M {
+        return Err(format!("x, y, z and yaw must be at most {FARTHEST_M:e}"));
+    }
+    if !(LEAST_SCALE..=1.0 / LEAST_SCALE).contains(&scale) {
+        return Err(format!("scale must be from {LEAST_SCALE:e} to {:e}, is {scale}", 1.0 / LEAST_SCALE));
     }
     Ok(Keyframe { at, place, yaw, scale })
 }
@@ -184,6 +192,7 @@ mod tests {
         wrong("id,t,x,y,z\na,2025,1,,3\n", "y is missing");
         wrong("id,t,x,y,z\na,2025,1,far,3\n", "y must be a number");
         wrong("id,t,x,y,z\na,,1,2,3\n", "t is missing");
-        wrong("id,t,x,y,z,scale\na,2025,1,2,3,0\n", "scale must be more than 0, is 0");
+        wrong("id,t,x,y,z\na,2025,1e308,2,3\n", "x, y, z and yaw must be at most 1e9");
+        wrong("id,t,x,y,z,scale\na,2025,1,2,3,0\n", "scale must be from 1e-6 to 1e6, is 0");
     }
 }

@@ -168,7 +168,8 @@ pub const CITY_ROWS: &[Row<CitySpec>] = &[
                 let mut keys = ChangeKeys::default();
                 let is_read = row::read(CHANGE_ROWS, &fields, given.reader, &mut keys);
                 let change = keys.change();
-                if change.is_none() {
+                // Of files that are not there that is told.
+                if change.is_none() && !fields.given("files") {
                     let message =
                         "says no states: since and until, two times, or files, an earlier state, would be right";
                     given.reader.checker.note(&fields.place, "", node.line, message);

@@ -92,14 +92,7 @@ impl Bench {
     pub fn new(model: CityModel) -> Self {
         let gpu = Gpu::open().expect("an adapter");
         let geometries: Vec<u32> = (0..model.geometries.len() as u32).collect();
-        let shown = Shown {
-            model: &model,
-            geometries: &geometries,
-            coplanar: &[],
-            ground: None,
-            is_lit_as_before: false,
-            facades: false,
-        };
+        let shown = Shown::of(&model, &geometries);
         let city = CityBuffers::new(&gpu, &shown, None).expect("a city");
         let edges = EdgeBuffers::new(&gpu, &shown, &city, &CreaseAngles::default()).expect("edges");
         let all = super::gather(&shown, &city, &CreaseAngles::default());

@@ -69,8 +69,14 @@ fn a_history_that_nobody_asks_for_costs_nothing() {
     };
     assert_eq!(counts(&mut of_scene(&without), &asked(&without)), expected);
     assert_ne!(counts(&mut studio, &asked(&with)), expected);
-    // And when nobody asks any more, all is as before.
-    assert_eq!(counts(&mut studio, &with), expected);
+    // When nobody asks any more, what moves is still drawn beside the rest, and nothing else costs anything: the picture is as before.
+    let drawn = |studio: &mut Studio| studio.render(&with, &Request::plain(SIZE)).expect("a picture").rgba;
+    assert!(drawn(&mut studio) == drawn(&mut of_scene(&with)));
+    let mut without_timetable = with.clone();
+    without_timetable.city.timetables.clear();
+    let mut studio = of_scene(&without_timetable);
+    assert_ne!(counts(&mut studio, &asked(&without_timetable)), expected);
+    assert_eq!(counts(&mut studio, &without_timetable), expected);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 
 use glam::{DVec2, DVec3};
 use veduta::{
+    figure::{self, scene_file},
     geom::Aabb,
     geom::Shape,
     lens::{Handled, Lens, Parameter, Region},
@@ -228,4 +229,38 @@ fn what_moves_costs_a_draw_for_each_moment_at_which_it_shows() {
         let more = now[1] - own[1];
         assert_eq!(more, 2 * (k as u64 + 1), "two triangles for each moment: {now:?}, {own:?}");
     }
+}
+
+#[test]
+fn an_overlay_with_a_moment_leaves_what_shows_beside_it() {
+    let folder = Folder::new("tram-overlay");
+    let tram = tram(&folder);
+    let scene = |time: &str| {
+        let text = format!(
+            "veduta = 1\n[camera]\neye = [20, -60, 40]\ntarget = [20, 0, 0]\n[[poi]]\nname = \"p\"\nat = [20, 0, 0]\n\
+             [[lens]]\nname = \"then\"\nkind = \"best-view\"\npoi = \"p\"\n{time}\n\
+             [[lens]]\nname = \"rest\"\nkind = \"best-view\"\npoi = \"p\"\n"
+        );
+        let mut parsed = scene_file::parse(&text, "s.toml", &Default::default()).unwrap_or_else(|e| panic!("{e}"));
+        parsed.city = tram.city.clone();
+        parsed.style.effects.clear();
+        parsed
+    };
+    let then = scene("time = [{ op = \"set\", at = \"2025-06-01T08:00:36\" }]");
+    let mut studio = of_scene(&then);
+    let mut drawn = |scene: &Scene| figure::draw(&mut studio, scene, &Request::plain([400, 240])).expect("a picture");
+    let (without, with) = (drawn(&scene("")), drawn(&then));
+    // Seen beside one another, one after the other and again: each shows its own.
+    let all = [drawn(&then), drawn(&scene("")), drawn(&then)];
+    assert!(all[0].rgba == with.rgba && all[1].rgba == without.rgba && all[2].rgba == with.rgba);
+    let place = with.overlays.iter().find(|shown| shown.lens == 0).expect("an overlay");
+    let is_in = |x: usize, y: usize| {
+        (0..2).all(|axis| {
+            let at = [x, y][axis] as i32;
+            (place.at[axis]..place.at[axis] + place.size[axis] as i32).contains(&at)
+        })
+    };
+    let differing: Vec<bool> =
+        (0..400 * 240).filter(|i| with.rgba[*i] != without.rgba[*i]).map(|i| is_in(i % 400, i / 400)).collect();
+    assert!(differing.len() > 20 && differing.iter().all(|inside| *inside), "{} differ", differing.len());
 }
