@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::{
     city::{
-        compare::{Comparison, Key, State},
+        compare::{CompareError, Comparison, Key, State},
         join::Added,
         lifetime::{Dating, Lifetime, Lifetimes},
         load::error::LoadError,
@@ -36,12 +36,58 @@ pub enum Between {
     },
 }
 
-/// What the attribute says.
-const ADDED: &str = "added";
-const REMOVED: &str = "removed";
-const KEPT: &str = "kept";
-/// At neither of two moments.
-const NEITHER: &str = "at neither";
+/// The usual name of the attribute.
+pub const ATTRIBUTE: &str = "change";
+
+/// What became of an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Became {
+    /// It is in the later state alone.
+    Added,
+    /// It is in the earlier state alone.
+    Removed,
+    /// It is in both, and the same.
+    Kept,
+    /// It is in neither of two moments.
+    AtNeither,
+    /// It has another shape.
+    OtherShape,
+    /// It has other attributes, or another type.
+    OtherAttributes,
+    /// Both of these.
+    Other,
+}
+
+impl Became {
+    /// What may have become of objects of an earlier state in files.
+    pub const OF_EARLIER: [Self; 5] = [Self::Removed, Self::Kept, Self::OtherShape, Self::OtherAttributes, Self::Other];
+
+    /// What the attribute says.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Added => "added",
+            Self::Removed => "removed",
+            Self::Kept => "kept",
+            Self::AtNeither => "at neither",
+            Self::OtherShape => "other shape",
+            Self::OtherAttributes => "other attributes",
+            Self::Other => "other shape and attributes",
+        }
+    }
+}
+
+impl From<State> for Became {
+    fn from(state: State) -> Self {
+        match state {
+            State::Added => Self::Added,
+            State::Removed => Self::Removed,
+            State::Unchanged => Self::Kept,
+            State::Changed { geometry: true, attributes: false } => Self::OtherShape,
+            State::Changed { geometry: false, .. } => Self::OtherAttributes,
+            State::Changed { .. } => Self::Other,
+        }
+    }
+}
 
 impl CityModel {
     /// Adds an attribute to all objects with a date: what became of them from one moment to another.
@@ -51,16 +97,16 @@ impl CityModel {
     pub fn add_change(&mut self, attribute: &str, [since, until]: [Moment; 2], dating: &Dating) -> Result<(), String> {
         let of = |lifetime: &Lifetime| {
             let is_undated = lifetime.begin.is_none() && lifetime.end.is_none();
-            let word = match [since, until].map(|at| lifetime.holds(Some(at))) {
-                [true, true] => KEPT,
-                [true, false] => REMOVED,
-                [false, true] => ADDED,
-                [false, false] => NEITHER,
+            let became = match [since, until].map(|at| lifetime.holds(Some(at))) {
+                [true, true] => Became::Kept,
+                [true, false] => Became::Removed,
+                [false, true] => Became::Added,
+                [false, false] => Became::AtNeither,
             };
-            (!is_undated).then_some(word)
+            (!is_undated).then_some(became)
         };
         let lifetimes = Lifetimes::new(self, dating)?;
-        let words: Vec<Option<&str>> = lifetimes.of.iter().map(of).collect();
+        let words: Vec<Option<Became>> = lifetimes.of.iter().map(of).collect();
         self.add_words(attribute, &words);
         Ok(())
     }
@@ -76,33 +122,48 @@ impl CityModel {
         before: &CityModel,
         key: Option<&str>,
     ) -> Result<u64, LoadError> {
-        let key = key.map_or(Key::Id, |key| Key::Attribute(key.to_owned()));
-        let found = Comparison::new(before, self, &key).map_err(|error| LoadError::new(file, error.to_string()))?;
-        let of = |state: State| match state {
-            State::Added => ADDED,
-            State::Removed => REMOVED,
-            State::Unchanged => KEPT,
-            State::Changed { geometry: true, attributes: false } => "other shape",
-            State::Changed { geometry: false, .. } => "other attributes",
-            State::Changed { .. } => "other shape and attributes",
-        };
-        let words: Vec<Option<&str>> = found.after.iter().map(|compared| Some(of(compared.own))).collect();
+        let found = Comparison::new(before, self, &key_of(key));
+        let found = found.map_err(|error| LoadError::new(file, error.to_string()))?;
+        let words: Vec<Option<Became>> = found.after.iter().map(|compared| Some(compared.own.into())).collect();
         self.add_words(attribute, &words);
         Ok(found.before.iter().filter(|compared| compared.own == State::Removed).count() as u64)
     }
 
+    /// Adds an attribute to all objects of an earlier state: what became of them in a later one; of each object what that is.
+    ///
+    /// # Errors
+    /// The states cannot be compared.
+    pub fn add_change_until(
+        &mut self,
+        attribute: &str,
+        after: &CityModel,
+        key: Option<&str>,
+    ) -> Result<Vec<Became>, CompareError> {
+        let found = Comparison::new(self, after, &key_of(key))?;
+        let became: Vec<Became> = found.before.iter().map(|compared| compared.own.into()).collect();
+        let words: Vec<Option<Became>> = became.iter().copied().map(Some).collect();
+        self.add_words(attribute, &words);
+        Ok(became)
+    }
+
     /// A word for each object that has one.
-    fn add_words(&mut self, attribute: &str, words: &[Option<&str>]) {
+    fn add_words(&mut self, attribute: &str, words: &[Option<Became>]) {
         let name = self.strings.intern(attribute);
+        self.changes.push(name);
         let mut added = Added::new(words.len());
         for (object, word) in (0..).zip(words).filter_map(|(object, word)| Some((object, (*word)?))) {
-            let value = Value::String(self.strings.intern(word));
+            let value = Value::String(self.strings.intern(word.word()));
             let first = added.values.len();
             added.values.push(Attribute { name, value });
             added.put(object, first);
         }
         self.add_attributes(added);
     }
+}
+
+/// By which attribute objects of two states are the same; without one by their ids.
+fn key_of(attribute: Option<&str>) -> Key {
+    attribute.map_or(Key::Id, |key| Key::Attribute(key.to_owned()))
 }
 
 #[cfg(test)]
@@ -164,7 +225,14 @@ mod tests {
         let before = state(&[("a", 0), ("b", 5000), ("gone", 9000)]);
         let mut after = state(&[("a", 0), ("b", 5100), ("c", 20_000)]);
         let gone = after.add_change_since(Path::new("old"), "change", &before, None).expect("a comparison");
+        let mut old = before.clone();
+        let became = old.add_change_until("change", &after, None).expect("a comparison");
+        let expected = [Became::Kept, Became::OtherShape, Became::Removed];
+        assert_eq!((words(&old, "change"), &became[..]), (expected.map(|of| of.word().into()).to_vec(), &expected[..]));
         assert_eq!((words(&after, "change"), gone), (vec!["kept".into(), "other shape".into(), "added".into()], 1));
+        // What became of objects since one state makes them no others than in another.
+        assert_eq!(after.add_change_since(Path::new("old"), "again", &before, None).expect("a comparison"), 1);
+        assert_eq!(words(&after, "again"), words(&after, "change"));
         let wrong = after.add_change_since(Path::new("old"), "change", &before, Some("number"));
         assert!(wrong.is_err_and(|error| error.to_string().contains("number")));
     }

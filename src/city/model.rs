@@ -149,6 +149,8 @@ pub struct CityModel {
     pub joins: Vec<JoinFacts>,
     /// Attributes that change over time, by name; objects have the last of their values as plain ones.
     pub histories: FxHashMap<StringId, History>,
+    /// Attributes that say what became of objects, and nothing of what they are.
+    pub changes: Vec<StringId>,
     /// The objects that move, ascending.
     pub moves: Vec<Keyframes>,
     /// The timetables by which they do.

@@ -1,6 +1,17 @@
 //! Which geometries are shown: the default rule for levels of detail.
 
+use std::sync::Arc;
+
 use crate::city::model::{CityModel, Lod};
+
+/// Objects of a city that are shown.
+#[derive(Clone, Debug)]
+pub struct ShownObjects {
+    /// The city.
+    pub model: Arc<CityModel>,
+    /// The objects, by index, ascending.
+    pub objects: Vec<u32>,
+}
 
 /// Geometries to show, as sorted indices into [`CityModel::geometries`].
 ///

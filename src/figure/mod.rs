@@ -172,7 +172,10 @@ pub fn furniture_of(studio: &Studio, scene: &Scene, size: [u32; 2]) -> Result<La
         return Ok(Laid::default());
     }
     let legends = match figure.legend.is_some() {
-        true => legend::legends(scene, &studio.model, &studio.lenses_in_view(scene, size)?),
+        true => {
+            let (seen, beside) = (studio.lenses_in_view(scene, size)?, studio.shown_beside(scene, size)?);
+            legend::legends(scene, &studio.model, &seen, &beside)
+        }
         false => Vec::new(),
     };
     let standing = overlays::standing(studio, scene, &view);

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use glam::{DQuat, DVec3};
 
 use crate::{
-    city::{Lod, derived::Derive},
+    city::{Lod, change::Became, derived::Derive},
     lens::{class::Class, handled::Handled},
     shader::Clip,
 };
@@ -21,6 +21,8 @@ pub struct Content {
     pub lod: Option<Lod>,
     /// What its objects are shown as; `None`: as themselves. Terrain, roads, water and land use stay as they are below.
     pub derive: Option<Derive>,
+    /// Which objects of an earlier state alone; `None`: all.
+    pub only: Option<Only>,
     /// Where along the sight line it shows.
     pub class: Class,
     /// What becomes of what is below.
@@ -39,6 +41,7 @@ impl Default for Content {
             files: Vec::new(),
             lod: None,
             derive: None,
+            only: None,
             class: Class::Inside,
             clip: Clip::Order,
             keep_terrain: false,
@@ -46,6 +49,15 @@ impl Default for Content {
             transform: None,
         }
     }
+}
+
+/// The objects of an earlier state of the city, in files, of which something became.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Only {
+    /// One of these.
+    pub became: Vec<Became>,
+    /// The attribute by which objects of both states are the same; `None`: their id.
+    pub key: Option<String>,
 }
 
 /// Which city a content shows; contents of one city differ in where it shows and stands.
@@ -57,6 +69,8 @@ pub struct ContentSource {
     pub lod: Option<Lod>,
     /// As [`Content::derive`].
     pub derive: Option<Derive>,
+    /// As [`Content::only`].
+    pub only: Option<Only>,
 }
 
 impl ContentSource {
@@ -69,7 +83,7 @@ impl ContentSource {
 impl Content {
     /// The city that it shows.
     pub fn source(&self) -> ContentSource {
-        ContentSource { files: self.files.clone(), lod: self.lod, derive: self.derive }
+        ContentSource { files: self.files.clone(), lod: self.lod, derive: self.derive, only: self.only.clone() }
     }
 
     /// Whether it stands elsewhere than its city.
@@ -79,7 +93,12 @@ impl Content {
 
     /// Whether terrain, roads, water and land use stay as they are below.
     pub fn keeps_terrain(&self) -> bool {
-        self.keep_terrain || self.derive.is_some()
+        self.keep_terrain || self.derive.is_some() || self.only.is_some()
+    }
+
+    /// What becomes of what is below, unless something else is asked for: what is shown of an earlier state is shown beside it.
+    pub fn usual_clip(&self) -> Clip {
+        if self.only.is_some() { Clip::Merge } else { Clip::default() }
     }
 }
 

@@ -495,6 +495,27 @@ mod tests {
     }
 
     #[test]
+    fn days_that_a_month_does_not_have_are_its_last_in_shaders_too() {
+        let step = |by: &str| Handled {
+            handler: "shift".to_owned(),
+            parameters: [("by".to_owned(), Parameter::Text(by.to_owned()))].into(),
+        };
+        for by in ["1 month", "-1 month", "13 months", "-1 year", "4 years"] {
+            let operator = Operator::new(&step(by), 0.0).expect("an operator");
+            let definition = &crate::shader::handlers()[operator.handler as usize];
+            let program = HostProgram::new(definition).expect("a program");
+            for at in
+                ["2023-12-31", "2024-01-31", "2024-02-29", "2024-03-31", "2000-10-31", "1900-01-30", "-0004-02-29"]
+            {
+                let at = Interval::parse(at).expect("a day").begin.expect("a beginning");
+                let words = program.moment(at.words(), &operator.words).expect("a moment");
+                let expected = operator.apply(Some(at)).expect("a moment");
+                assert_eq!(words, expected.words(), "{} and {by}: {}", at.written(), expected.written());
+            }
+        }
+    }
+
+    #[test]
     fn all_operators_of_the_program_run_on_the_host() {
         let names: Vec<&str> = asked_for(AskedBy::Times).filter(|h| !h.is_users).map(|h| h.name.as_str()).collect();
         assert_eq!(names, [SET, "shift", "ceil", "floor", "time-of-day", LOOP, AGGREGATE, GHOST, LINK]);

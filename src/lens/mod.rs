@@ -40,7 +40,7 @@ pub use body::LensBody;
 pub use border::{Border, BorderUnit, Discrete};
 pub use class::Class;
 pub use classify::classify;
-pub use content::{Content, ContentSource, Copied};
+pub use content::{Content, ContentSource, Copied, Only};
 pub use definition::Lens;
 pub use deform::Deform;
 pub use effect_use::{EffectUse, Parameter};

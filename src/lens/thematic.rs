@@ -5,7 +5,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
-    city::{CityModel, StringId, Strings, Value},
+    city::{CityModel, StringId, Strings, Value, shown::ShownObjects},
     lens::{
         breaks::{Classing, borders},
         color::{Srgb, parse_hex},
@@ -365,6 +365,24 @@ impl ThematicScale {
                 }
             }
             first += model.objects.len();
+        }
+    }
+
+    /// Counts objects of another data set, too, which are shown beside the city.
+    pub fn count_beside(&mut self, shown: &ShownObjects) {
+        let ShownObjects { model, objects } = shown;
+        if Source::find(model, &self.attribute).is_some_and(|source| source.is_of_faces()) {
+            return;
+        }
+        let colors = self.object_colors(model);
+        for color in objects.iter().map(|&object| colors[object as usize]) {
+            match self.legend.iter_mut().find(|entry| entry.color == color) {
+                Some(entry) => entry.count += 1,
+                None if color == OTHER => {
+                    self.legend.push(LegendEntry { label: "other".into(), color, count: 1, kind: LegendKind::Other });
+                }
+                None => {}
+            }
         }
     }
 

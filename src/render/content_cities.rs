@@ -11,6 +11,7 @@ use rustc_hash::FxHashSet;
 use crate::{
     city::{
         CityModel, Lod,
+        change::{ATTRIBUTE, Became, Between},
         derived::{Derive, derive},
         ground::plain_ground,
         load::{self, LoadOptions},
@@ -37,10 +38,27 @@ use crate::{
 /// Cities that contents show, as loaded so far.
 #[derive(Debug, Default)]
 pub struct ContentCities {
-    models: Vec<(Vec<PathBuf>, Arc<CityModel>)>,
+    models: Vec<Loaded>,
     cities: Vec<(ContentSource, Arc<ContentCity>)>,
     /// Names given so far.
     given: u64,
+}
+
+/// Another data set.
+#[derive(Debug)]
+struct Loaded {
+    files: Vec<PathBuf>,
+    /// Whether it is an earlier state of the scene's city, and by which attribute objects of both are the same.
+    earlier: Option<Option<String>>,
+    model: Arc<CityModel>,
+    /// What became of its objects.
+    became: Vec<Became>,
+}
+
+impl Loaded {
+    fn is_of(&self, source: &ContentSource) -> bool {
+        self.files == source.files && self.earlier == source.only.as_ref().map(|only| only.key.clone())
+    }
 }
 
 /// The contents of a scene in a frame.
@@ -121,7 +139,7 @@ impl ContentCities {
             }
         }
         self.cities.retain(|(source, _)| used.contains(source));
-        self.models.retain(|(files, _)| self.cities.iter().any(|(source, _)| source.files == *files));
+        self.models.retain(|model| self.cities.iter().any(|(source, _)| model.is_of(source)));
         Ok(found)
     }
 
@@ -136,7 +154,9 @@ impl ContentCities {
         if let Some((.., city)) = self.cities.iter().find(|(known, _)| *known == source) {
             return Ok((!is_shown(city)).then(|| city.clone()));
         }
-        let model = if is_own { stage.model.clone() } else { self.model(&content.files, stage.reading)? };
+        let loaded = if is_own { None } else { Some(self.model(&source, stage)?) };
+        let loaded = loaded.map(|place| &self.models[place]);
+        let model = loaded.map_or(stage.model, |loaded| &loaded.model).clone();
         let drawn = || model.geometries.iter().filter(|g| g.triangles > 0);
         if let Some(lod) = content.lod.filter(|lod| !drawn().any(|g| g.lod == *lod)) {
             let mut all: Vec<Lod> = drawn().map(|g| g.lod).collect();
@@ -145,7 +165,7 @@ impl ContentCities {
             let all: Vec<String> = all.iter().map(Lod::to_string).collect();
             return Err(("lod", format!("nothing has the level of detail {lod}; there are {}", all.join(", "))));
         }
-        let geometries = match content.lod {
+        let mut geometries = match content.lod {
             None if is_own => stage.geometries.to_vec(),
             lod => shown_geometries(&model, lod),
         };
@@ -155,11 +175,16 @@ impl ContentCities {
                 false => ("files", format!("{} hold nothing that can be shown", named(&content.files))),
             });
         }
+        if let Some((only, became)) = content.only.as_ref().zip(loaded.map(|loaded| &loaded.became)) {
+            let is_of = |g: &u32| only.became.contains(&became[model.geometries[*g as usize].object as usize]);
+            let is_ground = |g: &u32| model.objects[model.geometries[*g as usize].object as usize].class.is_ground();
+            geometries.retain(|g| is_of(g) && !is_ground(g));
+        }
         self.given += 1;
         let city = match &content.derive {
             Some(how) => derived(self.given, model, &geometries, how, is_own),
             None => {
-                let wants_ground = !is_own && stage.drawn.scene.city.ground;
+                let wants_ground = !is_own && content.only.is_none() && stage.drawn.scene.city.ground;
                 let ground = wants_ground.then(|| plain_ground(&model, &geometries)).flatten();
                 let (source, heights) = (model.clone(), Vec::new());
                 ContentCity {
@@ -184,14 +209,30 @@ impl ContentCities {
         Ok((!is_shown(&city)).then_some(city))
     }
 
-    fn model(&mut self, files: &[PathBuf], reading: &LoadOptions) -> Result<Arc<CityModel>, (&'static str, String)> {
-        if let Some((_, model)) = self.models.iter().find(|(of, _)| of == files) {
-            return Ok(model.clone());
+    /// The place of a data set among those that are loaded.
+    fn model(&mut self, source: &ContentSource, stage: &Stage) -> Result<usize, (&'static str, String)> {
+        if let Some(known) = self.models.iter().position(|known| known.is_of(source)) {
+            return Ok(known);
         }
-        let model = load::load(files, reading, &load::Quiet).map_err(|error| ("files", error.to_string()))?;
-        let model = Arc::new(model);
-        self.models.push((files.to_vec(), model.clone()));
-        Ok(model)
+        let reading = LoadOptions { frames: stage.model.frames, ..stage.reading.of_others() };
+        let model = load::load(&source.files, &reading, &load::Quiet);
+        let mut model = model.map_err(|error| ("files", error.to_string()))?;
+        let (changes, dating) = &stage.reading.changes;
+        for change in changes {
+            if let Between::Moments(moments) = change.between
+                && let Err(message) = model.add_change(&change.attribute, moments, dating)
+            {
+                log::info!("{}: {message}", named(&source.files));
+            }
+        }
+        let earlier = source.only.as_ref().map(|only| only.key.clone());
+        let became = match &earlier {
+            Some(key) => model.add_change_until(ATTRIBUTE, stage.model, key.as_deref()),
+            None => Ok(Vec::new()),
+        };
+        let became = became.map_err(|error| ("only", error.to_string()))?;
+        self.models.push(Loaded { files: source.files.clone(), earlier, model: Arc::new(model), became });
+        Ok(self.models.len() - 1)
     }
 }
 

@@ -19,7 +19,7 @@ use crate::{
         ground::{Ground, plain_ground},
         load::LoadOptions,
         place::Places,
-        shown::shown_geometries,
+        shown::{ShownObjects, shown_geometries},
         spatial::SpatialIndex,
         sun::{Site, SunPosition},
     },
@@ -631,6 +631,37 @@ impl Studio {
             seen[volume.lens as usize] = true;
         }
         Ok(seen)
+    }
+
+    /// What lenses show of earlier states of the city beside it in a picture of this size: each data set with its objects that are shown.
+    ///
+    /// # Errors
+    /// Those of a picture.
+    pub fn shown_beside(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<ShownObjects>, RenderError> {
+        let drawn = scene.drawn();
+        let is_beside = |lens: u32| {
+            let content = drawn.scene.lenses.get(lens as usize).and_then(|lens| lens.content());
+            content.is_some_and(|content| content.only.is_some())
+        };
+        let mut found: Vec<ShownObjects> = Vec::new();
+        if !(0..drawn.scene.lenses.len() as u32).any(is_beside) {
+            return Ok(found);
+        }
+        let contents = self.resolve(&drawn, size, 1)?.contents;
+        for used in contents.uses.iter().filter(|used| is_beside(used.lens)) {
+            let Some(city) = contents.of_lens(used.lens).and_then(|shown| shown.city.as_ref()) else { continue };
+            let geometries = if city.is_derived() { &city.made_of.0 } else { &city.geometries };
+            let objects = geometries.iter().map(|&g| city.source.geometries[g as usize].object);
+            match found.iter_mut().find(|known| Arc::ptr_eq(&known.model, &city.source)) {
+                Some(known) => known.objects.extend(objects),
+                None => found.push(ShownObjects { model: city.source.clone(), objects: objects.collect() }),
+            }
+        }
+        for shown in &mut found {
+            shown.objects.sort_unstable();
+            shown.objects.dedup();
+        }
+        Ok(found)
     }
 
     /// The volumes of the scene's enabled lenses where they stand in a picture of this size.

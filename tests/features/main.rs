@@ -7,6 +7,7 @@ mod bodies;
 mod borders;
 mod call_outs;
 mod captions;
+mod changes;
 mod citydata;
 mod cli;
 mod compare;

@@ -37,10 +37,13 @@ impl<'a> Texts<'a> {
     pub fn each_change(&self, before: u32, after: u32, change: &mut dyn FnMut(AttributeChange<'a>)) {
         let olds = self.before.attributes_of(before);
         let news = self.after.attributes_of(after);
+        // What became of objects is nothing that they are.
+        let is_known = |name: StringId, model: &CityModel| !model.changes.contains(&name);
         let mut index = Index { texts: self, news, by_name: None };
         let mut is_met = vec![false; news.len()];
         let mut is_first = FirstOf::default();
-        for (number, old) in olds.iter().enumerate().filter(|(_, old)| is_first.meets(old.name)) {
+        let olds = olds.iter().enumerate().filter(|(_, old)| is_known(old.name, self.before));
+        for (number, old) in olds.filter(|(_, old)| is_first.meets(old.name)) {
             let at = index.find(old.name, number);
             at.iter().for_each(|at| is_met[*at] = true);
             let value = at.map_or(Value::Null, |at| news[at].value);
@@ -53,7 +56,7 @@ impl<'a> Texts<'a> {
         }
         let mut is_first = FirstOf::default();
         for (new, is_met) in news.iter().zip(is_met) {
-            if is_first.meets(new.name) && !is_met && new.value != Value::Null {
+            if is_first.meets(new.name) && !is_met && new.value != Value::Null && is_known(new.name, self.after) {
                 let name = self.after.strings.get(new.name);
                 change(AttributeChange { name, before: Value::Null, after: new.value });
             }

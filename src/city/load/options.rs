@@ -85,6 +85,11 @@ pub enum Sibling {
 }
 
 impl LoadOptions {
+    /// For other data sets beside the city: what became of their objects is asked otherwise, and nothing of them moves.
+    pub fn of_others(&self) -> Self {
+        Self { changes: Default::default(), timetables: Vec::new(), ..self.clone() }
+    }
+
     /// Follows `reference` as it stands in `file` (relative to its folder), inside the allowed folders. Exporters quote names, escape
     /// blanks, write the path that was there on their machine, and other letter case: where nothing is found as it stands, it is
     /// taken in these ways, in this order.

@@ -213,9 +213,11 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
         let new = if was_open { render::told(problems, &format!("cell {}: scene", cell.name))? } else { problems };
         reported.extend(new);
         if sheet.legend {
-            let seen = studio.on_ground(&cell.scene).and_then(|scene| studio.lenses_in_view(&scene, size));
-            let seen = seen.map_err(|error| failed(format!("cell {}: {error}", cell.name)))?;
-            legend::join(&mut legends, legend::legends(&cell.scene, &studio.model, &seen));
+            let shown = studio
+                .on_ground(&cell.scene)
+                .and_then(|scene| Ok((studio.lenses_in_view(&scene, size)?, studio.shown_beside(&scene, size)?)));
+            let (seen, beside) = shown.map_err(|error| failed(format!("cell {}: {error}", cell.name)))?;
+            legend::join(&mut legends, legend::legends(&cell.scene, &studio.model, &seen, &beside));
         }
     }
     let planned = lay_out(sheet, &words, &legends, size).map_err(failed)?;

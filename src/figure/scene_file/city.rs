@@ -6,7 +6,7 @@ use glam::DVec2;
 
 use crate::{
     city::{
-        change::{Between, CityChange},
+        change::{ATTRIBUTE, Between, CityChange},
         side_table::Join,
     },
     figure::scene_file::{
@@ -209,12 +209,9 @@ struct ChangeKeys {
     key: Option<String>,
 }
 
-/// The attribute where none is named.
-const CHANGE_ATTRIBUTE: &str = "change";
-
 impl ChangeKeys {
     fn of(change: &CityChange) -> Self {
-        let attribute = Some(change.attribute.clone()).filter(|name| name != CHANGE_ATTRIBUTE);
+        let attribute = Some(change.attribute.clone()).filter(|name| name != ATTRIBUTE);
         match &change.between {
             Between::Moments([since, until]) => {
                 Self { attribute, since: Some(*since), until: Some(*until), ..Self::default() }
@@ -234,7 +231,7 @@ impl ChangeKeys {
             }
             _ => return None,
         };
-        Some(CityChange { attribute: self.attribute.unwrap_or_else(|| CHANGE_ATTRIBUTE.to_owned()), between })
+        Some(CityChange { attribute: self.attribute.unwrap_or_else(|| ATTRIBUTE.to_owned()), between })
     }
 }
 

@@ -3,7 +3,10 @@
 use glam::DQuat;
 
 use crate::{
-    city::derived::{Derive, FORMS, Form, HEIGHT_RANGE_M, Height, LIFT_M, LIFT_RANGE_M, WORDS},
+    city::{
+        change::Became,
+        derived::{Derive, FORMS, Form, HEIGHT_RANGE_M, Height, LIFT_M, LIFT_RANGE_M, WORDS},
+    },
     figure::scene_file::{
         check::{Fields, lod},
         effects::Shown,
@@ -15,7 +18,7 @@ use crate::{
         reader::Reader,
         row::{self, Row, field, keys_of},
     },
-    lens::{Content, Copied},
+    lens::{Content, Copied, Only},
     shader::{Clip, effect::AskedBy},
 };
 
@@ -132,6 +135,42 @@ const CONTENT_ROWS: &[Row<Content>] = &[
             Some(Form::Height(Height::Factor(factor))) => Some(factor.into()),
             _ => None,
         },
+    ),
+    Row::<Content>::new(
+        key(
+            "only",
+            Kind::Names,
+            "all objects",
+            "",
+            "Of the files, an earlier state of the city, only objects of which this became: `removed`, `kept`, `other shape`, `other attributes`, `other shape and attributes`. They have it as their attribute `change`; terrain, roads, water and land use stay as they are below. See Change.",
+            "[\"removed\", \"other shape\"]",
+        ),
+        |content, _| {
+            let only = content.only.as_ref()?;
+            Some(Data::list(only.became.iter().map(|became| became.word())))
+        },
+        |content, given| {
+            let of = |word: &String| Became::OF_EARLIER.into_iter().find(|became| became.word() == word);
+            let words = given.node.names();
+            if let Some(wrong) = words.iter().find(|word| of(word).is_none()) {
+                let known = Became::OF_EARLIER.map(|became| format!("\"{}\"", became.word())).join(", ");
+                let message = format!("\"{wrong}\" became of no object of an earlier state; expected some of {known}");
+                given.reader.checker.note(&given.fields.place, given.key, given.node.line, message);
+            }
+            let became = words.iter().filter_map(of).collect();
+            content.only = Some(Only { became, key: given.fields.text("key").map(str::to_owned) });
+        },
+    ),
+    Row::<Content>::joint(
+        key(
+            "key",
+            Kind::Text,
+            "the id",
+            "",
+            "With `only`: the attribute by which objects of both states are the same.",
+            "\"identificatie\"",
+        ),
+        |content, _| content.only.as_ref()?.key.as_deref().map(Into::into),
     ),
     field!(
         key(
@@ -256,6 +295,14 @@ pub fn read(reader: &mut Reader, fields: &Fields, of_effects: Option<Shown>) -> 
                 copied(&mut content);
             }
             row::read(CONTENT_ROWS, &own, reader, &mut content);
+            if content.only.is_some() && !own.given("files") {
+                let message = "has a meaning only with files, those of an earlier state of the city";
+                reader.checker.note(&own.place, "only", own.line("only"), message);
+            }
+            if own.given("key") && !own.given("only") {
+                let message = "has a meaning only with only; for example only = \"removed\"";
+                reader.checker.note(&own.place, "key", own.line("key"), message);
+            }
             Some(content)
         }
     };
@@ -267,7 +314,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, of_effects: Option<Shown>) -> 
         let message = "is missing: a content lens shows something. For example content = { lod = \"1.2\" }";
         reader.checker.note(&fields.place, "content", fields.place.line, message);
     }
-    content.map(|content| Content { clip: clip.unwrap_or_default(), ..content })
+    content.map(|content| Content { clip: clip.unwrap_or(content.usual_clip()), ..content })
 }
 
 /// What a content derives, of its keys; what is wrong is noted.

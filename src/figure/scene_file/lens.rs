@@ -22,7 +22,6 @@ use crate::{
     },
     lens::{Border, BorderUnit, Discrete, Lens, LensKind, Placement, Region, best_view::Depiction},
     scene::above_ground::heights_of_lens,
-    shader::Clip,
 };
 
 /// `[[lens]]`.
@@ -327,16 +326,15 @@ const LENS_ROWS: &[Row<Lens>] = &[
         key(
             "clip",
             Kind::Word { now: &["order", "merge", "discard"], later: &[] },
-            "\"order\"",
+            "\"order\"; \"merge\" where the content has `only`",
             "",
             "Where its content shows, what becomes of what is below, the context and contents of lower lenses: by `order` it is clipped; with `merge` it stays and the content is added; with `discard` nothing shows, neither, where a lower lens shows another content.",
             "\"merge\"",
         ),
         |lens, _| {
             lens.content()
-                .map(|content| content.clip)
-                .filter(|clip| *clip != Clip::default())
-                .map(|clip| clip.word().into())
+                .filter(|content| content.clip != content.usual_clip())
+                .map(|content| content.clip.word().into())
         },
     ),
     Row::<Lens>::new(

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::{tests::read_text, *};
 use crate::{
     city::{
-        change::{Between, CityChange},
+        change::{Became, Between, CityChange},
         derived::{Derive, Form, Height},
         lifetime::{Dating, Undated},
         side_table::Join,
@@ -14,7 +14,7 @@ use crate::{
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
         BestView, Border, BorderUnit, Class, Content, Copied, Deform, Discrete, EffectUse, Handled, Lens, LensBody,
-        LensKind, LensSprite, Occluders, OwnEye, Parameter, Placement, Region, Rendering,
+        LensKind, LensSprite, Occluders, Only, OwnEye, Parameter, Placement, Region, Rendering,
         best_view::{Depiction, LocalView, Look, MapMode},
         chosen::Choice,
         deform::{BORDER, ControlProfile, Step},
@@ -232,13 +232,15 @@ prop_compose! {
         derive in prop::option::of(derives()),
         class in prop::sample::select(vec![Class::Inside, Class::Front, Class::Behind, Class::Rest]),
         clip in prop::sample::select(Clip::ALL.to_vec()), keep_terrain in any::<bool>(),
+        only in prop::option::of((prop::sample::subsequence(Became::OF_EARLIER.to_vec(), 1..5), prop::option::of("[ -~äß]{1,9}"))),
         copied in prop::option::of((prop::option::of(point()), prop::option::of(point()), 1e-3..1e3f64, any::<bool>(), prop::array::uniform3(-1800..1800i32)))) -> Content {
         let copied = copied.map(|(from, to, scale, plain, angles)| match plain {
             true => Copied { from, to, ..Copied::default() },
             false => Copied { from, to, rotation: rotation(angles.map(|a| f64::from(a) / 10.0)), scale },
         });
-        let files = files.into_iter().filter(|f| !f.contains("${") && !f.starts_with("builtin:")).map(Into::into).collect();
-        Content { files, lod: tenths.map(|tenths| crate::city::Lod { tenths }), derive, class, clip, keep_terrain, copied, transform: None }
+        let files: Vec<std::path::PathBuf> = files.into_iter().filter(|f| !f.contains("${") && !f.starts_with("builtin:")).map(Into::into).collect();
+        let only = only.filter(|_| !files.is_empty()).map(|(became, key)| Only { became, key });
+        Content { files, only, lod: tenths.map(|tenths| crate::city::Lod { tenths }), derive, class, clip, keep_terrain, copied, transform: None }
     }
 }
 
