@@ -157,6 +157,7 @@ pub const ROWS: &[Row] = &[
     row(Action::AddLens(NewLens::Eraser), Menu::Lens, "Add eraser lens", None),
     row(Action::AddLens(NewLens::Content), Menu::Lens, "Add content lens (flat)", None),
     row(Action::AddLens(NewLens::Time), Menu::Lens, "Add time lens", plain(Key::Y)),
+    row(Action::AddLens(NewLens::Change), Menu::Lens, "Add change lens", None),
     row(Action::AddLens(NewLens::Occlusion), Menu::Lens, "See the object through what hides it", plain(Key::R)),
     row(Action::AddLens(NewLens::Deformation), Menu::Lens, "Add deformation lens", None),
     row(Action::AddLens(NewLens::Lower), Menu::Lens, "Lower what hides the object", None),

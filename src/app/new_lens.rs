@@ -4,7 +4,9 @@ use glam::DVec3;
 
 use crate::{
     app::document::Document,
-    scene::{PoiPlace, Scene},
+    city::change::{ATTRIBUTE, Between},
+    scene::{PiecePlace, PoiPlace, Scene},
+    time::{Moment, Span},
 };
 
 /// Kinds of new lenses.
@@ -20,6 +22,8 @@ pub enum NewLens {
     Content,
     /// Shows another moment in it.
     Time,
+    /// Shows what became of its objects from one time to another.
+    Change,
     /// Draws what hides an object as x-ray.
     Occlusion,
     /// Moves what is in it.
@@ -58,6 +62,7 @@ impl NewLens {
             Self::Eraser => "eraser",
             Self::Content => "flat",
             Self::Time => "time",
+            Self::Change => "change",
             Self::Occlusion => "revealed",
             Self::Deformation => "raised",
             Self::Lower => "lowered",
@@ -92,6 +97,14 @@ impl NewLens {
             Self::Eraser => format!("kind = \"color\", {shape}, effects = [\"eraser\"]"),
             Self::Content => format!("kind = \"content\", {shape}, content = {{ derive = \"flat\" }}"),
             Self::Time => format!("kind = \"time\", {upright}, time = {}", other_time(document.scene())),
+            Self::Change => {
+                let (attribute, [since, until]) = states(&mut draft)?;
+                format!(
+                    "kind = \"time\", {upright}, time = [{{ op = \"aggregate\", at = [{since}, {until}], show = \"any\" }}], \
+                     effects = [{{ effect = \"thematic\", attribute = {attribute}, counts = true, categories = [\"added\", \"removed\", \"kept\", \"at neither\"], \
+                     colors = [\"#2f9e5b\", \"#c94f3d\", \"#d9d2c5\", \"#8a9bb0\"], no_data = \"#e6e2d8\" }}]"
+                )
+            }
             Self::Occlusion => format!("kind = \"occlusion\", poi = {poi}, render = \"x-ray\""),
             Self::Deformation => {
                 format!("kind = \"deformation\", {upright}, deform = [{{ kind = \"scale\", factors = [1, 1, 2] }}]")
@@ -116,6 +129,34 @@ fn other_time(scene: &Scene) -> &'static str {
         Some(_) => "[{ op = \"shift\", by = \"-50 years\" }]",
         None => "[{ op = \"set\", at = \"1900\" }]",
     }
+}
+
+/// The attribute that says what became of objects from one time to another, and these times, quoted; new ones where the scene has none: a hundred
+/// years up to what it shows.
+fn states(draft: &mut Document) -> Result<(String, [String; 2]), String> {
+    let found = draft.scene().city.changes.iter().find_map(|change| match change.between {
+        Between::Moments(times) => Some((change.attribute.clone(), times)),
+        Between::Files { .. } => None,
+    });
+    let (attribute, times) = match found {
+        Some(found) => found,
+        None => {
+            let changes = &draft.scene().city.changes;
+            let is_free = |name: &String| changes.iter().all(|change| change.attribute != *name);
+            let names = std::iter::once(ATTRIBUTE.to_owned()).chain((2..).map(|i| format!("{ATTRIBUTE} {i}")));
+            let attribute = names.into_iter().find(is_free).unwrap_or_default();
+            let until = draft.scene().moment.or(Moment::of_year(2000)).ok_or("no time")?;
+            let times = [until.shifted(Span::of_months(-1200)), until];
+            let [since, until] = times.map(|time| quoted(&time.written()));
+            let (at, name) = (changes.len(), quoted(&attribute));
+            draft.set(&format!("city.change.{at}={{ attribute = {name}, since = {since}, until = {until} }}"))?;
+            if draft.scene().figure.legend == PiecePlace::None {
+                draft.set("figure.legend=\"auto\"")?;
+            }
+            (attribute, times)
+        }
+    };
+    Ok((quoted(&attribute), times.map(|time| quoted(&time.written()))))
 }
 
 /// The name of the point of interest that an object is; a new one where there is none.
@@ -145,4 +186,31 @@ pub fn free_name(scene: &Scene, stem: &str) -> String {
 /// A text as TOML has it.
 pub fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_lens_brings_what_it_shows() {
+        let mut document = Document::new(Scene::default(), None);
+        document.set("time.at=\"1850-06-01\"").expect("a scene");
+        let spot = Spot { at: DVec3::ZERO, radius: 50.0, object: None };
+        assert_eq!(NewLens::Change.add(&mut document, &spot), Ok(0));
+        let year = |year: i64| Moment::of_date(year, 6, 1).expect("a day");
+        let changes = document.scene().city.changes.clone();
+        let [change] = &changes[..] else { panic!("one change") };
+        assert_eq!((&change.attribute[..], &change.between), (ATTRIBUTE, &Between::Moments([year(1750), year(1850)])));
+        assert_eq!(document.scene().figure.legend, PiecePlace::Auto);
+        // Another is of the same times.
+        document.set("time.at=\"1600\"").expect("a scene");
+        assert_eq!(NewLens::Change.add(&mut document, &spot), Ok(1));
+        assert_eq!(document.scene().city.changes, changes);
+        let [first, second] = &document.scene().lenses[..] else { panic!("two lenses") };
+        assert_eq!((&first.time, &first.effects), (&second.time, &second.effects));
+        assert!(first.name == "change" && second.name == "change 2");
+        assert!((0..3).all(|_| document.undo().is_some()));
+        assert!(document.scene().city.changes.is_empty() && document.scene().lenses.is_empty());
+    }
 }

@@ -226,10 +226,15 @@ impl Window {
         self.render_thread.open(self.spec.clone(), reading);
     }
 
+    /// Whether the scene names a city that is loaded otherwise than the one that is there.
+    fn wants_another_city(&self) -> bool {
+        let asked = &self.document.scene().city;
+        !asked.files.is_empty() && !asked.loads_as(&self.spec)
+    }
+
     /// Loads again what edits of the scene ask for: other files, another level of detail.
     fn follow_city(&mut self) {
-        let is_other = !self.document.scene().city.loads_as(&self.spec);
-        if self.city.is_none() || self.loading.is_some() || !is_other || self.document.scene().city.files.is_empty() {
+        if self.city.is_none() || self.loading.is_some() || !self.wants_another_city() {
             return;
         }
         let document = std::mem::take(&mut self.document);
@@ -356,6 +361,8 @@ impl Window {
                     self.tell_what_is_not_there(&frame.scene);
                     self.frame = Some(frame);
                 }
+                // The city that it is about is on its way.
+                Reply::NotDrawn(_) if self.loading.is_some() || self.wants_another_city() => {}
                 Reply::NotDrawn(error) => self.fail(format!("{NOT_DRAWN}{error}")),
                 Reply::Exported(file, false) => self.say(format!("{} is written.", file.display())),
                 Reply::Exported(file, true) => {

@@ -107,6 +107,9 @@ impl CityModel {
         };
         let lifetimes = Lifetimes::new(self, dating)?;
         let words: Vec<Option<Became>> = lifetimes.of.iter().map(of).collect();
+        if words.iter().all(Option::is_none) {
+            log::warn!("no object says when it is there: {attribute} has no values");
+        }
         self.add_words(attribute, &words);
         Ok(())
     }

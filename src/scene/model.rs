@@ -5,7 +5,13 @@ use std::path::PathBuf;
 use glam::{DVec2, DVec3};
 
 use crate::{
-    city::{Materials, change::CityChange, lifetime::Dating, load::Up, side_table::Join},
+    city::{
+        Materials,
+        change::{Between, CityChange},
+        lifetime::Dating,
+        load::Up,
+        side_table::Join,
+    },
     lens::{
         EffectUse, Handled, Lens,
         best_view::{Background, BaseStyle, StyleLook},
@@ -97,7 +103,10 @@ pub struct CitySpec {
 impl CitySpec {
     /// Whether another is the same city on the GPU: what only says when objects are there may differ.
     pub fn loads_as(&self, other: &Self) -> bool {
-        *self == Self { dating: self.dating.clone(), ..other.clone() }
+        // What became of objects between two times goes by when they are there.
+        let is_dated = self.changes.iter().any(|change| matches!(change.between, Between::Moments(_)));
+        let dating = if is_dated { &other.dating } else { &self.dating };
+        *self == Self { dating: dating.clone(), ..other.clone() }
     }
 }
 
