@@ -517,7 +517,7 @@ impl Window {
         let poi = name.and_then(|name| scene.pois.iter().find(|poi| poi.name == *name));
         match poi.map(|poi| scene.place(poi)) {
             Some(PoiPlace::Object(id)) => self.city.as_ref().map_or(Aabb::EMPTY, |city| {
-                city.model.find_object(&id).map_or(Aabb::EMPTY, |object| city.model.family_bounds(object))
+                city.model.find_object(&id).map_or(Aabb::EMPTY, |object| self.bounds_of(city, object))
             }),
             Some(PoiPlace::At(at)) => Aabb::around(at, DVec3::splat(POINT_RADIUS_M)),
             Some(PoiPlace::AboveGround(at)) => above_ground::above(at, &self.ground())

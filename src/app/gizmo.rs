@@ -18,7 +18,10 @@ use crate::{
     },
     geom::Aabb,
     lens::{Lens, Placement, Region},
-    scene::{above_ground, anchor::anchor},
+    scene::{
+        above_ground,
+        anchor::{anchor, object_of},
+    },
     view::View,
 };
 
@@ -41,8 +44,11 @@ impl Window {
         if matches!(lens.placement, Placement::World | Placement::AboveGround) {
             return Some(DVec3::ZERO);
         }
-        let city = self.city.as_ref()?;
-        anchor(&lens.placement, self.document.scene(), &city.model).ok().flatten()
+        let (city, scene) = (self.city.as_ref()?, self.document.scene());
+        let origin = anchor(&lens.placement, scene, &city.model).ok().flatten()?;
+        let object = object_of(&lens.placement, scene).and_then(|id| city.model.find_object(&id));
+        let pose = object.and_then(|object| city.model.pose_of(object, scene.shown_moment()));
+        Some(pose.map_or(origin, |pose| pose.place(origin)))
     }
 
     /// A shape of a lens in coordinates of its origin: as it is, or with its heights above the ground as those of the model.

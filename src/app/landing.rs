@@ -64,7 +64,7 @@ impl Window {
     /// Around the chosen object, but for ground, metres.
     fn chosen_bounds(&self) -> Option<Aabb> {
         let object = self.chosen.object.filter(|object| !self.is_ground(*object))?;
-        let bounds = self.city.as_ref()?.model.family_bounds(object);
+        let bounds = self.bounds_of(self.city.as_ref()?, object);
         (!bounds.is_empty()).then_some(bounds)
     }
 

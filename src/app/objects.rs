@@ -64,7 +64,7 @@ pub fn show(window: &mut Window, ui: &mut Ui) {
     }
     if let Some(object) = go_to {
         window.chosen.object = Some(object);
-        let bounds = model.family_bounds(object);
+        let bounds = model.bounds_at(object, window.document.scene().shown_moment());
         window.frame_box(&bounds);
     }
     ui.separator();
@@ -134,7 +134,7 @@ fn about(window: &mut Window, ui: &mut Ui, model: &CityModel, object: u32) {
     }
     ui.horizontal_wrapped(|ui| {
         if ui.button("Go there").clicked() {
-            let bounds = model.family_bounds(object);
+            let bounds = model.bounds_at(object, window.document.scene().shown_moment());
             window.frame_box(&bounds);
         }
         if ui.button("Hide").clicked() {

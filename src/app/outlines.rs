@@ -77,12 +77,13 @@ impl Window {
             let object = model.geometries[model.tiles[tile as usize].geometry as usize].object;
             city.roots.get(object as usize) == Some(&root)
         };
+        let pose = model.pose_of(root, self.document.scene().shown_moment());
         index.triangles_where(
             model,
             |bounds| bounds.meets(&around),
             is_own,
             |_, corners| {
-                all.push(*corners);
+                all.push(pose.map_or(*corners, |pose| corners.map(|corner| pose.place(corner))));
                 all.len() <= MOST_TRIANGLES
             },
         );

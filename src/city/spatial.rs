@@ -21,7 +21,7 @@ const PLAIN_TILE: usize = 48;
 const RUN: usize = 4;
 
 /// Finds tiles and triangles of the geometries that are shown.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SpatialIndex {
     /// Tiles, as numbered in the hierarchy.
     tiles: Vec<u32>,
@@ -187,13 +187,13 @@ impl SpatialIndex {
         });
     }
 
-    /// Follows vertices of the model that moved; tiles, triangles and what is shown are the same. The bounds of the
+    /// Follows vertices of the model that moved, of tiles that `is_moved` names; tiles, triangles and what is shown are the same. The bounds of the
     /// model's tiles must have followed.
-    pub fn refit(&mut self, model: &CityModel) {
+    pub fn refit(&mut self, model: &CityModel, is_moved: impl Fn(u32) -> bool + Sync) {
         let bounds: Vec<Aabb> = self.tiles.iter().map(|&tile| model.tiles[tile as usize].bounds).collect();
         self.top.refit(&bounds);
         self.tiles.par_iter().zip(&mut self.runs).for_each(|(&tile, runs)| {
-            if let Some(runs) = runs {
+            if let Some(runs) = runs.as_mut().filter(|_| is_moved(tile)) {
                 runs.refit(&boxes_of_runs(model, tile));
             }
         });

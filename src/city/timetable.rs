@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 
-use crate::time::Moment;
+use crate::{city::model::CityModel, geom::Aabb, time::Moment};
 
 /// Where an object is at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +48,11 @@ impl Pose {
         self.to + self.scale * (DQuat::from_rotation_z(self.turn) * (point - self.from))
     }
 
+    /// A box around what stands of a box of the file, metres.
+    pub fn boxed(&self, bounds: &Aabb) -> Aabb {
+        if bounds.is_empty() { *bounds } else { Aabb::from_points(bounds.corners().map(|corner| self.place(corner))) }
+    }
+
     /// The point of the file that stands at a place, metres.
     pub fn in_file(&self, place: DVec3) -> DVec3 {
         self.from + DQuat::from_rotation_z(-self.turn) * (place - self.to) / self.scale
@@ -81,6 +86,19 @@ impl Keyframes {
             yaw: between(before.yaw, next.yaw),
             scale: between(before.scale, next.scale),
         }
+    }
+}
+
+impl CityModel {
+    /// How an object stands at a moment, of a model as its file has it; `None`: where the file has it.
+    pub fn pose_of(&self, object: u32, at: Option<Moment>) -> Option<Pose> {
+        Some(self.moves[self.mover(object)?].pose(at))
+    }
+
+    /// The box around an object with all its parts at a moment, of a model as its file has it, metres.
+    pub fn bounds_at(&self, object: u32, at: Option<Moment>) -> Aabb {
+        let bounds = self.family_bounds(object);
+        self.pose_of(object, at).map_or(bounds, |pose| pose.boxed(&bounds))
     }
 }
 

@@ -155,7 +155,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         let scene = studio.on_ground(&said).map_err(|error| at_frame(error.to_string()))?;
         studio.pass(&scene, scene.figure.pixels(), 1.0 / film.fps()).map_err(|error| at_frame(error.to_string()))?;
         if frame < first {
-            figure::pass(&studio, &scene, scene.figure.pixels(), &mut standing)
+            figure::pass(&mut studio, &scene, scene.figure.pixels(), &mut standing)
                 .map_err(|error| at_frame(error.to_string()))?;
             continue;
         }

@@ -45,6 +45,7 @@ pub fn draw_next(
     standing: &mut Standing,
 ) -> Result<Picture, RenderError> {
     let scene = &*studio.on_ground(scene)?;
+    studio.stand_at(scene);
     let own = furniture_of(studio, scene, request.size)?;
     draw_with(studio, scene, request, standing, own)
 }
@@ -53,8 +54,9 @@ pub fn draw_next(
 ///
 /// # Errors
 /// What an overlay shows and is not there.
-pub fn pass(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Standing) -> Result<(), RenderError> {
+pub fn pass(studio: &mut Studio, scene: &Scene, size: [u32; 2], standing: &mut Standing) -> Result<(), RenderError> {
     let scene = &*studio.on_ground(scene)?;
+    studio.stand_at(scene);
     let own = furniture_of(studio, scene, size)?;
     overlays::pass(studio, scene, size, &own.taken, standing)
 }
@@ -65,6 +67,7 @@ pub fn pass(studio: &Studio, scene: &Scene, size: [u32; 2], standing: &mut Stand
 /// As for [`draw`].
 pub fn draw_untitled(studio: &mut Studio, scene: &Scene, request: &Request) -> Result<Picture, RenderError> {
     let scene = &*studio.on_ground(scene)?;
+    studio.stand_at(scene);
     draw_with(studio, scene, request, &mut Standing::default(), Laid::default())
 }
 
@@ -89,6 +92,7 @@ pub fn draw_apart(
     take: &mut TakeBand,
 ) -> Result<Apart, RenderError> {
     let scene = &*studio.on_ground(scene)?;
+    studio.stand_at(scene);
     let own = furniture_of(studio, scene, request.size)?;
     let mut overlays = overlays::overlays(studio, scene, request, &own.taken, &mut Standing::default())?;
     let furniture = over(&mut overlays, own);
@@ -111,6 +115,7 @@ pub fn draw_in_bands(
     take: &mut TakeBand,
 ) -> Result<Picture, RenderError> {
     let scene = &*studio.on_ground(scene)?;
+    studio.stand_at(scene);
     let own = furniture_of(studio, scene, request.size)?;
     let mut overlays = overlays::overlays(studio, scene, request, &own.taken, &mut Standing::default())?;
     let furniture = over(&mut overlays, own);

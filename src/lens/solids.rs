@@ -105,11 +105,21 @@ pub struct ShownCity<'a> {
     pub geometries: &'a [u32],
     /// Finds their triangles; made when first asked for.
     pub index: &'a OnceLock<SpatialIndex>,
-    /// Tells cities apart that show the same objects elsewhere: 0 at rest.
+    /// Tells cities apart that show the same objects elsewhere ([`Self::numbered`]).
     pub number: u64,
 }
 
 impl<'a> ShownCity<'a> {
+    /// The number of a city that timetables show as the so-manieth; those that follow, up to the next, are of where deformations show it.
+    pub fn numbered(stance: u64) -> u64 {
+        stance << 32
+    }
+
+    /// The number of the same where nothing deforms it.
+    pub fn undeformed(number: u64) -> u64 {
+        number >> 32 << 32
+    }
+
     /// What finds the triangles that are shown.
     pub fn index(&self) -> &'a SpatialIndex {
         self.index.get_or_init(|| SpatialIndex::build(self.model, self.geometries))

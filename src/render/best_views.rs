@@ -37,6 +37,14 @@ pub struct Bulk {
     pub corners: Vec<DVec3>,
 }
 
+impl KnownViews {
+    /// Things stand elsewhere now.
+    pub fn clear(&mut self) {
+        self.bulks.clear();
+        self.best.clear();
+    }
+}
+
 impl Studio {
     /// Where an object and its parts are, as far as they are shown.
     ///

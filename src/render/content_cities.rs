@@ -39,9 +39,20 @@ use crate::{
 #[derive(Debug, Default)]
 pub struct ContentCities {
     models: Vec<Loaded>,
-    cities: Vec<(ContentSource, Arc<ContentCity>)>,
+    cities: Vec<Made>,
+    /// What moves of the scene's city as contents show it, and whose it is.
+    of_movers: Vec<(ContentSource, u64, Option<Arc<ContentCity>>)>,
     /// Names given so far.
     given: u64,
+}
+
+/// The city of contents.
+#[derive(Debug)]
+struct Made {
+    source: ContentSource,
+    /// Whether what moves of the scene's own city is left out.
+    is_still: bool,
+    city: Arc<ContentCity>,
 }
 
 /// Another data set.
@@ -70,6 +81,8 @@ pub struct SceneContents {
     pub uses: Vec<ContentUse>,
     /// The other data sets among them: their objects follow the city's, in this order.
     pub models: Vec<Arc<CityModel>>,
+    /// Those among the contents that are of the scene's own city.
+    own: Vec<(u32, ContentSource)>,
 }
 
 /// What contents are worked out from.
@@ -80,6 +93,8 @@ pub struct Stage<'a> {
     pub model: &'a Arc<CityModel>,
     /// Its geometries that are shown.
     pub geometries: &'a [u32],
+    /// Those among them that never move, where what moves is drawn beside them.
+    pub still: Option<&'a [u32]>,
     /// Volumes of enabled lenses.
     pub volumes: &'a [LensVolume],
     /// From the coordinates of a lens to the model's; `None`: it is attached to what is not there.
@@ -95,6 +110,7 @@ impl ContentCities {
     pub fn clear(&mut self) {
         self.cities.clear();
         self.models.clear();
+        self.of_movers.clear();
     }
 
     /// The contents that a frame may show. An error names the key of the scene file.
@@ -122,7 +138,7 @@ impl ContentCities {
                 used.push(source.clone());
             }
             let volumes: Vec<&LensVolume> = stage.volumes.iter().filter(|v| v.lens as usize == i).collect();
-            let is_loaded = source.is_shown_city() || self.cities.iter().any(|(known, _)| *known == source);
+            let is_loaded = source.is_shown_city() || self.cities.iter().any(|made| made.source == source);
             if volumes.is_empty() || !(is_loaded || volumes.iter().any(|v| (stage.is_seen)(v))) {
                 continue;
             }
@@ -136,10 +152,13 @@ impl ContentCities {
             if !found.wanted.iter().any(|w| w.number == number) {
                 let first_object = found.first_object(stage.model, city.as_deref());
                 found.wanted.push(WantedContent { number, turn: 0, city, first_object, placement });
+                found.own.extend(source.files.is_empty().then_some((number, source)));
             }
         }
-        self.cities.retain(|(source, _)| used.contains(source));
-        self.models.retain(|model| self.cities.iter().any(|(source, _)| model.is_of(source)));
+        let is_still = stage.still.is_some();
+        self.cities.retain(|made| used.contains(&made.source) && made.is_still == is_still);
+        self.models.retain(|model| self.cities.iter().any(|made| model.is_of(&made.source)));
+        self.of_movers.retain(|(source, ..)| used.contains(source));
         Ok(found)
     }
 
@@ -150,8 +169,10 @@ impl ContentCities {
         if source.is_shown_city() {
             return Ok(None);
         }
-        let is_shown = |city: &ContentCity| city.is_own && !city.is_derived() && city.geometries == stage.geometries;
-        if let Some((.., city)) = self.cities.iter().find(|(known, _)| *known == source) {
+        let own = stage.still.unwrap_or(stage.geometries);
+        let is_still = stage.still.is_some();
+        let is_shown = |city: &ContentCity| city.is_own && !city.is_derived() && city.geometries == own;
+        if let Some(Made { city, .. }) = self.cities.iter().find(|m| m.source == source && m.is_still == is_still) {
             return Ok((!is_shown(city)).then(|| city.clone()));
         }
         let loaded = if is_own { None } else { Some(self.model(&source, stage)?) };
@@ -166,9 +187,12 @@ impl ContentCities {
             return Err(("lod", format!("nothing has the level of detail {lod}; there are {}", all.join(", "))));
         }
         let mut geometries = match content.lod {
-            None if is_own => stage.geometries.to_vec(),
+            None if is_own => own.to_vec(),
             lod => shown_geometries(&model, lod),
         };
+        if is_own && is_still && content.lod.is_some() {
+            geometries.retain(|g| model.mover(model.geometries[*g as usize].object).is_none());
+        }
         if geometries.is_empty() {
             return Err(match is_own {
                 true => ("lod", "the city holds nothing that can be shown".to_owned()),
@@ -186,27 +210,52 @@ impl ContentCities {
             None => {
                 let wants_ground = !is_own && content.only.is_none() && stage.drawn.scene.city.ground;
                 let ground = wants_ground.then(|| plain_ground(&model, &geometries)).flatten();
-                let (source, heights) = (model.clone(), Vec::new());
-                ContentCity {
-                    id: self.given,
-                    model,
-                    source,
-                    geometries,
-                    heights,
-                    made_of: (Vec::new(), false),
-                    footprints: OnceLock::new(),
-                    ground,
-                    is_own,
-                    moves: false,
-                    has_shadow: true,
-                    is_lit_as_before: false,
-                    not_derived: [0; 3],
-                }
+                ContentCity { ground, ..ContentCity::plain(self.given, model, geometries, is_own) }
             }
         };
         let city = Arc::new(city);
-        self.cities.push((source, city.clone()));
+        self.cities.push(Made { source, is_still, city: city.clone() });
         Ok((!is_shown(&city)).then_some(city))
+    }
+
+    /// What moves of the scene's own city, as contents of that city show it: each of `moving` once more for each of them.
+    pub fn moving(&mut self, contents: &SceneContents, moving: &[WantedContent]) -> Vec<WantedContent> {
+        let mut found = Vec::new();
+        for (number, source) in &contents.own {
+            let Some(content) = contents.wanted.iter().find(|w| w.number == *number) else { continue };
+            for one in moving {
+                let Some(base) = &one.city else { continue };
+                let Some(city) = self.mover(source, base) else { continue };
+                let placement = content.placement.after(&one.placement);
+                found.push(WantedContent { number: *number, city: Some(city), placement, ..*one });
+            }
+        }
+        found
+    }
+
+    /// Something that moves as contents show it; `None`: they show nothing of it.
+    fn mover(&mut self, source: &ContentSource, base: &Arc<ContentCity>) -> Option<Arc<ContentCity>> {
+        if source.is_shown_city() {
+            return Some(base.clone());
+        }
+        if let Some((.., known)) = self.of_movers.iter().find(|(of, id, _)| of == source && *id == base.id) {
+            return known.clone();
+        }
+        let model = &base.model;
+        let mover = |g: u32| model.mover(model.geometries[g as usize].object);
+        let own = base.geometries.first().and_then(|g| mover(*g));
+        let geometries: Vec<u32> = match source.lod {
+            None => base.geometries.clone(),
+            lod => shown_geometries(model, lod).into_iter().filter(|g| mover(*g) == own).collect(),
+        };
+        self.given += 1;
+        let city = match &source.derive {
+            Some(how) => ContentCity { moves: true, ..derived(self.given, model.clone(), &geometries, how, true) },
+            None => ContentCity { moves: true, ..ContentCity::plain(self.given, model.clone(), geometries, true) },
+        };
+        let city = Some(city).filter(|city| !city.geometries.is_empty()).map(Arc::new);
+        self.of_movers.push((source.clone(), base.id, city.clone()));
+        city
     }
 
     /// The place of a data set among those that are loaded.
@@ -237,6 +286,12 @@ impl ContentCities {
 }
 
 impl SceneContents {
+    /// Whether contents show something of the scene's own city elsewhere than it is.
+    pub fn has_copies(&self) -> bool {
+        let is_moved = |number: u32| self.wanted.iter().any(|w| w.number == number && !w.placement.is_none());
+        self.own.iter().any(|(number, _)| is_moved(*number))
+    }
+
     /// What the objects of a content's city are counted from.
     fn first_object(&mut self, own: &CityModel, city: Option<&ContentCity>) -> u32 {
         let Some(city) = city.filter(|city| !city.is_own) else { return 0 };
@@ -309,7 +364,7 @@ impl SceneContents {
                 gpu_bytes: on_gpu.filter(|_| is_new).map_or(0, |city| city.bytes),
             }
         };
-        self.wanted.iter().map(figure).collect()
+        self.wanted.iter().filter(|w| w.turn == 0).map(figure).collect()
     }
 
     /// The content that a lens shows.
@@ -389,8 +444,8 @@ impl WantedContent {
         self.placement.boxed(&of_objects.fold(Aabb::EMPTY, |all, g| all.union(g.bounds)))
     }
 
-    /// Box around where it stands, metres.
-    fn bounds(&self, own: &Aabb) -> Aabb {
+    /// Box around where it stands, metres; `own`: around the scene's city.
+    pub fn bounds(&self, own: &Aabb) -> Aabb {
         let of = |city: &Arc<ContentCity>| {
             let bounds = city.geometries.iter().map(|&g| city.model.geometries[g as usize].bounds);
             let ground = city.ground.as_ref().map_or(Aabb::EMPTY, |ground| ground.bounds);

@@ -58,6 +58,25 @@ pub struct ContentCity {
 }
 
 impl ContentCity {
+    /// Geometries of a model as they are, without a ground.
+    pub fn plain(id: u64, model: Arc<CityModel>, geometries: Vec<u32>, is_own: bool) -> Self {
+        Self {
+            id,
+            source: model.clone(),
+            model,
+            geometries,
+            heights: Vec::new(),
+            made_of: (Vec::new(), false),
+            footprints: OnceLock::new(),
+            ground: None,
+            is_own,
+            moves: false,
+            has_shadow: true,
+            is_lit_as_before: false,
+            not_derived: [0; 3],
+        }
+    }
+
     /// Whether it is the scene's own model, or another data set, as it is.
     pub fn is_derived(&self) -> bool {
         !Arc::ptr_eq(&self.model, &self.source)
@@ -246,7 +265,9 @@ impl Contents {
         let mut before = std::mem::take(&mut self.shown);
         let shown = wanted.iter().map(|w| {
             let placement = w.placement;
-            let world = World { city: w.id(), placement, is_own: w.city.as_ref().is_none_or(|city| city.is_own) };
+            let city = w.city.as_ref();
+            let (is_own, moves) = (city.is_none_or(|city| city.is_own), city.is_some_and(|city| city.moves));
+            let world = World { city: w.id(), placement, is_own, moves };
             let first_surface = self.first_surface(own, (world.city, w.first_object, placement.rotation, w.turn));
             let same = before.iter().position(|s| s.world == world);
             let chunks = same.map_or_else(

@@ -34,8 +34,8 @@ const MOST_TEXELS: u32 = 512;
 pub(super) struct KnownDeformations {
     strengths: Vec<KnownStrength>,
     images: Vec<(PathBuf, Texels)>,
-    /// The last rules of heights, and what they made of the city's.
-    heights: (Vec<Rule>, Arc<Heights>),
+    /// The number of the last city, its rules of heights, and what they made of its heights; the second as its file has it.
+    heights: (u64, Vec<Rule>, [Arc<Heights>; 2]),
 }
 
 /// How much of a deformation is used, wherever it stands.
@@ -72,7 +72,10 @@ pub(super) struct SceneDeformations {
 /// What a picture's deformations are found in.
 pub(super) struct Stage<'a> {
     pub scene: &'a Scene,
+    /// The city where it stands.
     pub model: &'a CityModel,
+    /// The same as its file has it.
+    pub file: &'a CityModel,
     /// Box around what is drawn at rest.
     pub bounds: Aabb,
     pub camera: Camera,
@@ -117,10 +120,16 @@ impl KnownDeformations {
         }
         self.strengths.retain(|known| known.is_wanted);
         self.strengths.iter_mut().for_each(|known| known.is_wanted = false);
-        if self.heights.0 != rules {
-            self.heights = (rules.clone(), Arc::new(heights_of(&rules, stage.city)?));
+        if self.heights.0 != stage.city.number || self.heights.1 != rules {
+            let own = Arc::new(heights_of(&rules, stage.city)?);
+            let of_file = match std::ptr::eq(stage.city.model, stage.file) {
+                true => own.clone(),
+                false => Arc::new(heights_of(&rules, ShownCity { model: stage.file, ..stage.city })?),
+            };
+            self.heights = (stage.city.number, rules, [own, of_file]);
         }
-        found.moved = Moved { heights: self.heights.1.clone(), deformers: Arc::new(deformers) };
+        let [heights, heights_of_file] = self.heights.2.clone();
+        found.moved = Moved { heights, heights_of_file, deformers: Arc::new(deformers) };
         Ok(found)
     }
 

@@ -282,7 +282,9 @@ fn worlds_of(contents: &Contents, input: &FrameInput) -> Vec<World> {
             |v: &LensVolume| v.seen_part(&input.view, input.tile).is_some() || has_shadows && !v.keeps_shadows;
         input.volumes.iter().any(|v| v.lens == lens && is_seen(v))
     };
-    let shown = |number: u32| input.operations.contents.iter().any(|c| c.city == number && may_show(c.lens));
+    // What moves by timetables is shown everywhere.
+    let shown =
+        |number: u32| number == 0 || input.operations.contents.iter().any(|c| c.city == number && may_show(c.lens));
     let mut worlds = vec![World::OWN];
     for (number, world) in contents.worlds() {
         if !worlds.contains(world) && shown(number) {
@@ -430,7 +432,7 @@ impl Met {
             })
             .collect();
         let raised = raised_of(&city.buffers, of);
-        let heights = of.world.is_own.then_some(&*of.moved.heights);
+        let heights = of.world.is_own.then_some(of.moved.heights_in(of.world.moves));
         let reach = Reach { supports: &supports, heights, raised: &raised, placement: &of.world.placement };
         // What is placed is met as a whole or not at all.
         let mut all_chunks = city.buffers.sections.iter().flat_map(|section| &section.chunks);
@@ -520,7 +522,7 @@ impl Reach<'_> {
 
 /// Of each surface of the table what its object's height becomes; none where no height does.
 fn raised_of(city: &CityBuffers, of: &Of) -> Vec<Option<Height>> {
-    let heights = &of.moved.heights;
+    let heights = of.moved.heights_in(of.world.moves);
     if heights.is_empty() || !of.world.is_own {
         return Vec::new();
     }

@@ -40,6 +40,8 @@ const MOST_TRIANGLES: usize = 1 << 18;
 #[derive(Debug)]
 pub(super) struct Displayed {
     moved: Moved,
+    /// The number of the city that is shown so.
+    of: u64,
     model: CityModel,
     index: OnceLock<SpatialIndex>,
     number: u64,
@@ -58,12 +60,13 @@ impl LastDisplayed {
         if moved.is_nothing() {
             return None;
         }
-        if let Some(last) = self.last.as_ref().filter(|last| last.moved == *moved) {
+        if let Some(last) = self.last.as_ref().filter(|last| last.moved == *moved && last.of == city.number) {
             return Some(last.clone());
         }
         self.count += 1;
         let model = displayed(city, moved);
-        let made = Displayed { moved: moved.clone(), model, index: OnceLock::new(), number: self.count };
+        let number = city.number + self.count;
+        let made = Displayed { moved: moved.clone(), of: city.number, model, index: OnceLock::new(), number };
         Some(self.last.insert(Arc::new(made)).clone())
     }
 }

@@ -95,6 +95,7 @@ impl Studio {
     ) -> Result<Vec<Pass>, RenderError> {
         let Asked { scene, request, furniture } = asked;
         inset.of = None;
+        let stood_at = self.stance.at();
         std::mem::swap(&mut inset.state, &mut self.renderer.view);
         std::mem::swap(&mut inset.occlusion, &mut self.known().occlusion);
         let whole = Image { number, size: request.size, is_opaque: !request.transparent };
@@ -109,6 +110,7 @@ impl Studio {
         }
         std::mem::swap(&mut inset.state, &mut self.renderer.view);
         std::mem::swap(&mut inset.occlusion, &mut self.known().occlusion);
+        self.put_at(stood_at);
         drawn
     }
 

@@ -86,6 +86,7 @@ pub mod silhouettes;
 pub mod solids;
 mod sprite_grid;
 mod sprites;
+mod stance;
 pub mod standing;
 pub mod stats;
 pub mod stored;

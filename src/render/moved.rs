@@ -14,6 +14,8 @@ use crate::{
 pub struct Moved {
     /// First.
     pub heights: Arc<Heights>,
+    /// The same of what moves by timetables, where the city's file has it: it is placed after that.
+    pub heights_of_file: Arc<Heights>,
     /// Then.
     pub deformers: Arc<Deformers>,
 }
@@ -22,6 +24,11 @@ impl Moved {
     /// Whether all is where it was.
     pub fn is_nothing(&self) -> bool {
         self.heights.is_empty() && self.deformers.0.is_empty()
+    }
+
+    /// The heights of objects of the city; of what moves by timetables, as its file has it.
+    pub(super) fn heights_in(&self, moves: bool) -> &Heights {
+        if moves { &self.heights_of_file } else { &self.heights }
     }
 
     /// Where a place is shown; of an object's, given that object.

@@ -1,7 +1,7 @@
 //! Objects that move by timetables (after Tiesel §4.3): each is a city of its own on the GPU, which is drawn once for each moment at which some
 //! of it may show, as it stands then. Of what is drawn for a moment stays what is where that moment shows.
 
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 
@@ -67,25 +67,17 @@ impl MovingObjects {
         let all = shown.map(|(keyframes, geometries)| {
             let bounds = |g: &u32| model.geometries[*g as usize].bounds;
             let bounds = geometries.iter().map(bounds).fold(Aabb::EMPTY, |all, own| all.union(own));
-            let city = ContentCity {
-                // Names of contents count from 1.
-                id: u64::MAX - keyframes as u64,
-                model: model.clone(),
-                source: model.clone(),
-                geometries,
-                heights: Vec::new(),
-                made_of: (Vec::new(), false),
-                footprints: OnceLock::new(),
-                ground: None,
-                is_own: true,
-                moves: true,
-                has_shadow: true,
-                is_lit_as_before: false,
-                not_derived: [0; 3],
-            };
+            // Names of contents count from 1.
+            let id = u64::MAX - keyframes as u64;
+            let city = ContentCity { moves: true, ..ContentCity::plain(id, model.clone(), geometries, true) };
             MovingObject { keyframes, city: Arc::new(city), bounds }
         });
         Self { all: all.collect(), still }
+    }
+
+    /// The city's geometries that stay where they are.
+    pub fn still(&self) -> &[u32] {
+        &self.still
     }
 
     /// What of a city's geometries is drawn where its file has it, and the box around what is drawn beside that, metres. `is_still`: nothing
@@ -109,7 +101,8 @@ impl MovingObjects {
         self.all.is_empty()
     }
 
-    /// What moves in a picture: each object at each moment that shows at a place where it stands then. `places`: of the lenses with operators.
+    /// What moves in a picture: each object at each moment that shows at a place where it stands then, or (`anywhere`) at any. `places`: of the
+    /// lenses with operators.
     ///
     /// # Errors
     /// More moments than can be told apart.
@@ -119,19 +112,20 @@ impl MovingObjects {
         epochs: &Epochs,
         places: &[LensPlaces],
         lifetimes: Option<&Lifetimes>,
+        anywhere: bool,
     ) -> Result<Moving, String> {
         let mut found = Moving { bounds: Aabb::EMPTY, ..Moving::default() };
         if self.is_empty() {
             return Ok(found);
         }
-        let anywhere = MetLenses::new(None, places);
+        let everywhere = MetLenses::new(None, places);
         let too_many = || {
             format!(
                 "objects move, and lenses show more than {MOST_TURNS} moments where they may be, or combinations of as many; fewer lenses with operators \
                  would be right"
             )
         };
-        let all = epochs.moments_of(anywhere.of(0)).ok_or_else(too_many)?;
+        let all = epochs.moments_of(everywhere.of(0)).ok_or_else(too_many)?;
         for object in &self.all {
             let keyframes = &model.moves[object.keyframes];
             for at in &all {
@@ -143,7 +137,7 @@ impl MovingObjects {
                 let bounds = placement.boxed(&object.bounds);
                 let met = MetLenses::new(Some(&[bounds]), places);
                 let shown = epochs.moments_of(met.of(0)).ok_or_else(too_many)?;
-                if shown.binary_search(at).is_err() {
+                if !anywhere && shown.binary_search(at).is_err() {
                     continue;
                 }
                 let known = found.moments.iter().position(|known| known == at);
@@ -165,7 +159,8 @@ impl MovingObjects {
     }
 }
 
-fn placement(pose: &Pose) -> Placement {
+/// Where an object stands that has a pose.
+pub(super) fn placement(pose: &Pose) -> Placement {
     let rotation = if pose.turn == 0.0 { DQuat::IDENTITY } else { DQuat::from_axis_angle(DVec3::Z, pose.turn) };
     Placement { from: pose.from, to: pose.to, rotation, scale: pose.scale }
 }

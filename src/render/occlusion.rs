@@ -320,7 +320,7 @@ impl Occlusion {
             return units.clone();
         }
         let units = Arc::new(Units::new(city.model, city.geometries));
-        self.units.retain(|(number, _)| *number == 0);
+        self.units.retain(|(number, _)| *number == ShownCity::undeformed(city.number));
         self.units.push((city.number, units.clone()));
         units
     }

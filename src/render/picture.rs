@@ -47,12 +47,14 @@ use crate::{
         renderer::Renderer,
         resolve::{Known, ResolveError, Resolved, Surroundings},
         resource::recording::PassRecord,
+        stance::{self, Stance},
         stats::{self, Statistics},
         stored::SpriteTexels,
         visible_share,
         volume::LensVolume,
     },
     scene::{CitySpec, Drawn, Scene, Sun, SunTime},
+    time::Moment,
     view::{Camera, CameraError, View, first_view},
 };
 
@@ -188,6 +190,8 @@ pub struct Studio {
     moving: Arc<MovingObjects>,
     /// Whether the rest is drawn where its file has it, and what moves beside that: since a moment was asked for.
     is_still: bool,
+    /// Where what moves stands, for who asks on the host.
+    pub(super) stance: Stance,
 }
 
 impl Studio {
@@ -218,6 +222,7 @@ impl Studio {
             geometries,
             moving: Arc::new(moving),
             is_still: false,
+            stance: Stance::default(),
             ground,
             load: stats::Load::default(),
             backend: Backend::default(),
@@ -239,7 +244,26 @@ impl Studio {
 
     /// The city, and what is shown of it.
     pub(super) fn shown(&self) -> ShownCity<'_> {
-        ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index, number: 0 }
+        let number = ShownCity::numbered(self.stance.count);
+        ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index, number }
+    }
+
+    /// Has all that asks where things are find what moves by timetables where it is at the moment of a scene, if the scene has something that
+    /// asks. Whoever draws a scene has it stand so; who asks before that, asks for it.
+    pub fn stand_at(&mut self, scene: &Scene) {
+        if self.model.moves.is_empty() {
+            return;
+        }
+        if let Some(at) = stance::asked_for(scene) {
+            self.put_at(at);
+        }
+    }
+
+    /// The same at a moment.
+    pub(super) fn put_at(&mut self, at: Option<Moment>) {
+        if self.stance.put(&mut self.model, &mut self.index, at) {
+            self.known_views.get_mut().unwrap_or_else(PoisonError::into_inner).clear();
+        }
     }
 
     /// What finds the triangles that are shown, as soon as that is known: [`Self::find_triangles`], or a picture whose lenses are counted,
@@ -381,6 +405,7 @@ impl Studio {
         take: &mut TakeBand,
     ) -> Result<Picture, RenderError> {
         let started = Instant::now();
+        self.stand_at(scene);
         let drawn = scene.drawn();
         let resolved = self.resolve(&drawn, request.size, request.samples)?;
         let drawn_lenses = drawn.scene.lenses.len();
@@ -456,6 +481,7 @@ impl Studio {
         most_triangles: Option<u64>,
         after: &mut dyn FnMut(&mut Renderer, Part),
     ) -> Result<Vec<stats::Pass>, RenderError> {
+        self.stand_at(scene);
         let drawn = scene.drawn();
         let resolved = self.resolve(&drawn, request.size, request.samples)?;
         self.find_cities(&resolved, drawn.scene.style.facades)?;
@@ -485,6 +511,7 @@ impl Studio {
         furniture: &Furniture,
         mut timer: Option<&mut Timer>,
     ) -> Result<Vec<stats::Pass>, RenderError> {
+        self.stand_at(scene);
         let drawn = scene.drawn();
         let resolved = self.resolve(&drawn, request.size, request.samples)?;
         let whole = PictureTile::whole(request.size);
@@ -574,7 +601,7 @@ impl Studio {
     fn surroundings(&self) -> Surroundings<'_> {
         Surroundings {
             city: self.shown(),
-            model: &self.model,
+            model: self.stance.file(&self.model),
             facts: self.renderer.cities().map(|cities| cities.facts()),
             footprints: &self.footprints,
             reading: &self.reading,

@@ -70,8 +70,9 @@ pub(super) struct Known {
 
 /// What scenes are resolved in.
 pub(super) struct Surroundings<'a> {
-    /// The city, and what is shown of it.
+    /// The city where it stands, and what is shown of it.
     pub city: ShownCity<'a>,
+    /// The same as its file has it.
     pub model: &'a Arc<CityModel>,
     /// What is drawn of it; `None`: nothing yet.
     pub facts: Option<CityFacts<'a>>,
@@ -136,9 +137,12 @@ impl Surroundings<'_> {
         let sights = self.sights(scene, &eye, &deformations.moved, known);
         // What is moved may be anywhere.
         let seen = deformations.moved.is_nothing().then_some(&view);
-        let (mut operations, moving) = self.operations(scene, &volumes, tests, &contents, sights, seen)?;
+        let (mut operations, mut moving) = self.operations(scene, &volumes, tests, &contents, sights, seen)?;
         let mut contents = contents;
+        let shown = known.contents.moving(&contents, &moving.wanted);
+        moving.bounds = shown.iter().fold(moving.bounds, |all, one| all.union(one.bounds(&Aabb::EMPTY)));
         contents.wanted.extend(moving.wanted);
+        contents.wanted.extend(shown);
         add_members(&mut operations, &mut volumes, &self.models(&contents));
         check_counts(&operations, &volumes)?;
         let (own, moved) = (self.reach(), &deformations.moved);
@@ -185,7 +189,8 @@ impl Surroundings<'_> {
         }
         let mut stage = deformations::Stage {
             scene,
-            model: self.model,
+            model: self.city.model,
+            file: self.model,
             bounds: self.bounds(),
             camera: *camera,
             eye: &Eye::new(camera)?,
@@ -231,8 +236,9 @@ impl Surroundings<'_> {
             drawn,
             model: self.model,
             geometries: self.city.geometries,
+            still: self.shows_moving(scene)?.then(|| self.moving.still()),
             volumes,
-            motion: &|lens| eye.motion(lens, scene, self.model),
+            motion: &|lens| eye.motion(lens, scene, self.city.model),
             is_seen: &|volume| {
                 let is_in_sun = sees_sky || sun.as_ref().is_some_and(|frustum| frustum.meets(&volume.bounds));
                 is_in_sun || volume.seen_part(view, whole(view.size)).is_some()
@@ -274,7 +280,10 @@ impl Surroundings<'_> {
         time.met = self.met(&places, seen);
         let own = time.lifetimes.first().map(|own| &**own);
         let moving = match time.moves {
-            true => self.moving.at(self.model, &time.epochs, &places, own).map_err(ResolveError::Scene)?,
+            true => self
+                .moving
+                .at(self.model, &time.epochs, &places, own, contents.has_copies())
+                .map_err(ResolveError::Scene)?,
             false => Moving { bounds: Aabb::EMPTY, ..Moving::default() },
         };
         time.moving.clone_from(&moving.moments);
@@ -320,10 +329,20 @@ impl Surroundings<'_> {
         boxes
     }
 
+    /// Whether what moves is drawn beside the rest of the city.
+    fn moves(&self, epochs: &Epochs) -> bool {
+        !self.moving.is_empty() && (epochs.is_any() || self.is_still)
+    }
+
+    /// The same of a scene.
+    fn shows_moving(&self, scene: &Scene) -> Result<bool, ResolveError> {
+        Ok(!self.moving.is_empty() && self.moves(&Epochs::new(scene).map_err(ResolveError::Scene)?))
+    }
+
     /// Which moments show, and when objects are there.
     fn time(&self, scene: &Scene, contents: &SceneContents) -> Result<SceneTime, ResolveError> {
         let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;
-        let moves = !self.moving.is_empty() && (epochs.is_any() || self.is_still);
+        let moves = self.moves(&epochs);
         if !epochs.is_any() && !moves {
             return Ok(SceneTime::default());
         }

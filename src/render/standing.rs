@@ -35,6 +35,15 @@ impl Placement {
         if self.is_none() { p } else { self.rotation * ((p - self.from) * self.scale) + self.to }
     }
 
+    /// This one after another.
+    pub fn after(&self, first: &Self) -> Self {
+        if self.is_none() {
+            return *first;
+        }
+        let rotation = self.rotation * first.rotation;
+        Self { from: first.from, to: self.point(first.to), rotation, scale: self.scale * first.scale }
+    }
+
     /// A box around what a box holds.
     pub fn boxed(&self, bounds: &Aabb) -> Aabb {
         if self.is_none() || bounds.is_empty() {
@@ -53,11 +62,13 @@ pub(super) struct World {
     pub placement: Placement,
     /// Whether its objects are those of the scene's own city, and are as high as these.
     pub is_own: bool,
+    /// Whether it moves by a timetable.
+    pub moves: bool,
 }
 
 impl World {
     /// The scene's own city.
-    pub const OWN: Self = Self { city: 0, placement: Placement::NONE, is_own: true };
+    pub const OWN: Self = Self { city: 0, placement: Placement::NONE, is_own: true, moves: false };
 }
 
 /// How something of a city stands before deformations move it: with another height, and placed.

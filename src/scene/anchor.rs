@@ -49,6 +49,18 @@ pub fn anchor(placement: &Placement, scene: &Scene, model: &CityModel) -> Result
     }
 }
 
+/// The id of the city object that shapes are placed by, itself or as a point of interest.
+pub fn object_of(placement: &Placement, scene: &Scene) -> Option<String> {
+    match placement {
+        Placement::Object(id) => Some(id.clone()),
+        Placement::Poi(name) => {
+            let poi = scene.pois.iter().find(|poi| poi.name == *name)?;
+            if let PoiPlace::Object(id) = scene.place(poi) { Some(id) } else { None }
+        }
+        Placement::World | Placement::AboveGround | Placement::Camera => None,
+    }
+}
+
 fn middle_of(id: &str, model: &CityModel) -> Result<DVec3, AnchorProblem> {
     let Some(object) = model.find_object(id) else {
         let hint = did_you_mean(id, model.objects.iter().map(|o| &*o.id));

@@ -399,11 +399,11 @@ fn trapp_3_4_1_shows_sights_in_their_context() {
 fn trapp_3_4_3_ties_one_depiction_to_several_places_and_shows_the_surroundings() {
     let made = shipped("trapp-3-4-3-a", &[]);
     assert_eq!((made.placed.placements.len(), made.placed.lines.len()), (1, 3));
-    let made = shipped("trapp-3-4-3-b", &[]);
+    let mut made = shipped("trapp-3-4-3-b", &[]);
     let camera = made.studio.camera(&made.scene, made.scene.figure.size);
     let own = made.scene.lenses[0].best_view().unwrap();
     let from = views::From { main: camera, size: [200, 200], tracked: None };
-    let map = views::local(&made.studio, &made.scene, "map", own, own.view().unwrap(), &from).unwrap();
+    let map = views::local(&mut made.studio, &made.scene, "map", own, own.view().unwrap(), &from).unwrap();
     let seen = map.scene.camera.unwrap();
     assert_eq!(seen.eye.truncate(), camera.eye.truncate(), "around the eye");
     assert_eq!((seen.target - seen.eye).normalize_or(DVec3::X), -DVec3::Z, "from above");
@@ -601,7 +601,7 @@ fn what_goes_by_a_moving_point_moves_with_it() {
         {
             let own = scene.lenses[lens].best_view().unwrap();
             let from = views::From { main: scene.camera.unwrap(), size: [240, 160], tracked: None };
-            let local = views::local(&studio, &scene, "x", own, own.view().unwrap(), &from).unwrap();
+            let local = views::local(&mut studio, &scene, "x", own, own.view().unwrap(), &from).unwrap();
             let camera = local.scene.camera.unwrap();
             let visitor = DVec3::new(-40.0 + 4.0 * time_s, 0.0, 2.0);
             assert!((camera.eye - visitor - eye).length() < 1e-9, "{lens} at {time_s} s: {}", camera.eye);

@@ -451,7 +451,7 @@ fn random_figure(seed: u64) -> (String, [u32; 2]) {
 
 #[test]
 fn nothing_of_a_figure_stands_on_anything() {
-    let studio = town();
+    let mut studio = town();
     let (mut pieces, mut left_out, mut placed) = (0, 0, 0);
     for seed in 0..200 {
         let (text, size) = random_figure(seed);
@@ -459,7 +459,7 @@ fn nothing_of_a_figure_stands_on_anything() {
             .unwrap_or_else(|error| panic!("{error}\n{text}"));
         let laid = figure::furniture_of(&studio, &scene, size).expect("furniture");
         let mut standing = overlays::Standing::default();
-        overlays::pass(&studio, &scene, size, &laid.taken, &mut standing).expect("places");
+        overlays::pass(&mut studio, &scene, size, &laid.taken, &mut standing).expect("places");
         let view = View::new(studio.camera(&scene, size), size, &studio.extent()).expect("a view");
         let is_card = |p: &&Panel| p.color == [1.0; 3] && p.opacity > 0.9 && p.opacity < 1.0;
         let panels = panels(&laid.furniture);

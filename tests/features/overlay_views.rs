@@ -51,13 +51,14 @@ fn part(picture: &Picture, lens: u32) -> (Vec<[u8; 4]>, [u32; 2]) {
 
 #[test]
 fn an_object_fills_its_best_view_and_stands_out() {
-    let studio = street();
+    let mut studio = street();
     let scene = parsed(&format!("{EYE}{LONG}[[lens]]\nname = \"view\"\nkind = \"best-view\"\npoi = \"long\"\n"));
     let shown = scene.lenses[0].best_view().expect("a view");
     let main = scene.camera.expect("a camera");
     for size in [[240, 160], [160, 240], [400, 100]] {
         let from = From { main, size, tracked: None };
-        let own = local(&studio, &scene, "view", shown, shown.view().expect("an eye"), &from).expect("a view").scene;
+        let own =
+            local(&mut studio, &scene, "view", shown, shown.view().expect("an eye"), &from).expect("a view").scene;
         let camera = own.camera.expect("a camera");
         let view = View::new(camera, size, &studio.extent()).expect("a view");
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);

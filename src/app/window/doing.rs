@@ -14,7 +14,7 @@ use crate::{
         file_dialog::{Asking, FileDialog, Purpose},
         new_lens::{self, Spot},
         objects,
-        render_thread::{Draw, Export},
+        render_thread::{Draw, Export, Opened},
         state::{Chosen, Window},
         unsaved::LeftBehind,
         user_effects::is_effect,
@@ -332,7 +332,7 @@ impl Window {
         let object = self.chosen.object.and_then(|object| {
             let city = self.city.as_ref()?;
             let root = city.roots.get(object as usize).copied()?;
-            Some((city.model.objects[root as usize].id.to_string(), city.model.family_bounds(root)))
+            Some((city.model.objects[root as usize].id.to_string(), self.bounds_of(city, root)))
         });
         match object {
             Some((id, bounds)) if !bounds.is_empty() => {
@@ -380,10 +380,15 @@ impl Window {
         self.chosen.lens = self.chosen.lens.filter(|index| *index < count);
     }
 
+    /// The box around an object with its parts where it stands, metres.
+    pub(in crate::app) fn bounds_of(&self, city: &Opened, object: u32) -> Aabb {
+        city.model.bounds_at(object, self.document.scene().shown_moment())
+    }
+
     fn chosen_box(&self) -> Aabb {
         let of_lens = self.chosen_lens_box();
         match (self.chosen.object, &self.city) {
-            (Some(object), Some(city)) if of_lens.is_empty() || !self.is_lens_last => city.model.family_bounds(object),
+            (Some(object), Some(city)) if of_lens.is_empty() || !self.is_lens_last => self.bounds_of(city, object),
             _ => of_lens,
         }
     }

@@ -165,7 +165,7 @@ pub fn standing(studio: &Studio, scene: &Scene, view: &View) -> Vec<Rect> {
 /// # Errors
 /// What a view of an overlay names and the city does not have.
 pub fn pass(
-    studio: &Studio,
+    studio: &mut Studio,
     scene: &Scene,
     size: [u32; 2],
     blocked: &[Rect],
@@ -175,7 +175,7 @@ pub fn pass(
 }
 
 fn stand(
-    studio: &Studio,
+    studio: &mut Studio,
     scene: &Scene,
     size: [u32; 2],
     blocked: &[Rect],
@@ -189,7 +189,7 @@ fn stand(
 
 /// Where the overlays of a view stand, and those in them; `None`: it has none.
 fn plan(
-    studio: &Studio,
+    studio: &mut Studio,
     scene: &Scene,
     size: [u32; 2],
     blocked: &[Rect],
@@ -223,6 +223,7 @@ fn plan(
         let size = room.map(|side| (f64::from(side) * local.magnification).round() as u32);
         let inner = self::plan(studio, &local.scene, size, &[], number.wrapping_mul(NUMBERS), before, now)?;
         plan.views.insert(one.index, Inner { local, size, plan: inner });
+        studio.stand_at(scene);
     }
     Ok(Some(plan))
 }

@@ -65,12 +65,12 @@ pub struct From {
     pub tracked: Option<DVec2>,
 }
 
-/// The scene that the view of a lens shows.
+/// The scene that the view of a lens shows. The studio stands as it does at the moment of that, then.
 ///
 /// # Errors
 /// Where its point of interest has no place in the city.
 pub fn local(
-    studio: &Studio,
+    studio: &mut Studio,
     scene: &Scene,
     lens: &str,
     shown: &BestView,
@@ -78,6 +78,10 @@ pub fn local(
     &From { main, size, tracked }: &From,
 ) -> Result<Local, RenderError> {
     let main = &main;
+    let mut seen = seen_through(scene, shown);
+    show_moment(studio, scene, lens, &mut seen)?;
+    studio.stand_at(&seen);
+    let studio = &*studio;
     let model = &*studio.model;
     let wrong = |message: String| RenderError::Scene(format!("lens \"{lens}\": {message}"));
     let of_lens = |error: RenderError| match error {
@@ -92,7 +96,7 @@ pub fn local(
         let standing = Poi { name: poi.name.clone(), place: scene.place(poi) };
         let ball = ball(studio, &standing).map_err(of_lens)?;
         // Where it is shown: what moves it here moves it in its view, too, as far as that has the lens.
-        let center = studio.deformers(&seen_through(scene, shown), size)?.value(ball.center);
+        let center = studio.deformers(&seen, size)?.value(ball.center);
         let ball = Sphere { center, ..ball };
         Ok::<_, RenderError>((standing, ball, ahead.unwrap_or_else(|| local::heading(main))))
     };
@@ -103,7 +107,7 @@ pub fn local(
         framing.map(|framing| framing.camera()).map_err(|error| wrong(error.to_string()))
     };
     let mut own = Local {
-        scene: seen_through(scene, shown),
+        scene: seen.clone(),
         transparent: false,
         mirror: false,
         middle: None,
@@ -163,7 +167,6 @@ pub fn local(
         LocalView::Camera { camera, .. } => *camera,
     };
     own.scene.camera = Some(camera);
-    show_moment(studio, scene, lens, &mut own.scene)?;
     Ok(own)
 }
 

@@ -110,7 +110,7 @@ proptest! {
             }
             check(&model, &index, &lenses)?;
             let later = moved(&model, seed);
-            index.refit(&later);
+            index.refit(&later, |_| true);
             for lens in &lenses {
                 check(&later, &index, std::slice::from_ref(lens))?;
             }

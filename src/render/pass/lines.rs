@@ -125,7 +125,7 @@ pub struct Lines {
 struct PlacedEdges<'a> {
     edges: &'a EdgeBuffers,
     placement: &'a Placement,
-    /// The content's number; `None`: the scene's own.
+    /// The content's number, 0: what moves by timetables; `None`: the scene's own.
     content: Option<u32>,
     /// Offset of its `City`.
     offset: u32,
@@ -163,8 +163,9 @@ impl Lines {
         let view = &frame.plan.input.view;
         let frustum = view.frustum(1.0);
         let is_wanted = |bounds: &Aabb| draw.reaches.iter().any(|reach| reach.touches(bounds, view));
-        let is_shown =
-            |bounds: &Aabb| of.content.is_none_or(|number| cut.is_some_and(|c| c.hiding.shows(number, bounds, view)));
+        let is_shown = |bounds: &Aabb| {
+            of.content.is_none_or(|number| number == 0 || cut.is_some_and(|c| c.hiding.shows(number, bounds, view)))
+        };
         let mut counted = Counted::NONE;
         pass.set_vertex_buffer(0, of.edges.instances.slice(..));
         for range in of.edges.draws(|bounds| {

@@ -4,6 +4,7 @@ mod chains;
 mod costs;
 mod moving;
 mod partly;
+mod placed;
 mod sun;
 mod suns;
 mod varying;
