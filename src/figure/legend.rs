@@ -42,8 +42,15 @@ pub struct Row {
 
 /// The legends of a scene, the context's first, then those of the lenses from the top one down; `seen[i]` says whether
 /// lens i can be seen. Uses of one scale share a legend. An attribute that the city does not have has none: drawing
-/// says so. `beside`: other data sets whose objects are counted, too.
-pub fn legends(scene: &Scene, model: &CityModel, seen: &[bool], beside: &[ShownObjects]) -> Vec<Legend> {
+/// says so. `now`: the city with the values of the moment that is shown, whose objects are counted; `beside`: other data sets whose objects are
+/// counted, too.
+pub fn legends(
+    scene: &Scene,
+    model: &CityModel,
+    seen: &[bool],
+    now: &CityModel,
+    beside: &[ShownObjects],
+) -> Vec<Legend> {
     let context = scene.style.effects.iter().map(|used| (used, None));
     let drawn = scene.drawn();
     let is_seen = |i: usize| seen.get(drawn.owner(i as u32) as usize) == Some(&true);
@@ -52,6 +59,9 @@ pub fn legends(scene: &Scene, model: &CityModel, seen: &[bool], beside: &[ShownO
     let mut legends: Vec<Legend> = Vec::new();
     for (used, lens) in context.chain(of_lenses).filter(|(used, _)| is_thematic(used)) {
         let Ok(mut scale) = ThematicScale::new(model, used) else { continue };
+        if !std::ptr::eq(now, model) {
+            scale.count_now(now);
+        }
         beside.iter().for_each(|shown| scale.count_beside(shown));
         let named = scale.attribute.strip_prefix(OF_SURFACES).unwrap_or(&scale.attribute);
         let title = used.text("label").or(scale.measure.map(|m| m.label)).unwrap_or(named).to_owned();
@@ -180,14 +190,14 @@ mod tests {
             lens("unknown", vec![used(&[("attribute", "nothing")])]),
         ];
         let mut scene = Scene { lenses, ..Scene::default() };
-        let all = legends(&scene, &model, &[true, true, true, false, true, true], &[]);
+        let all = legends(&scene, &model, &[true, true, true, false, true, true], &model, &[]);
         let said: Vec<_> = all
             .iter()
             .map(|l| (l.title.as_str(), l.unit.as_deref(), l.lenses.iter().map(|l| l.0.as_str()).collect::<String>()))
             .collect();
         assert_eq!(said, [("yearOfConstruction", None, "ca".to_owned()), ("Use", Some("kind"), "b".to_owned())]);
         scene.style.effects = vec![age()];
-        let all = legends(&scene, &model, &[true; 6], &[]);
+        let all = legends(&scene, &model, &[true; 6], &model, &[]);
         assert_eq!(all.len(), 3, "the reversed one is another scale");
         assert!(all[0].lenses.is_empty(), "the context's holds everywhere");
     }
@@ -197,7 +207,7 @@ mod tests {
         let model = load(&["builtin:town".into()], &LoadOptions::default(), &Quiet).unwrap();
         let of = |parameters: &[(&str, &str)]| {
             let scene = Scene { lenses: vec![lens("a", vec![used(parameters)])], ..Scene::default() };
-            legends(&scene, &model, &[true], &[]).remove(0)
+            legends(&scene, &model, &[true], &model, &[]).remove(0)
         };
         let ramp = of(&[("attribute", "yearOfConstruction")]);
         assert!(ramp.bar().is_some_and(|(min, max)| min < max));
@@ -217,7 +227,7 @@ mod tests {
             let mut effect = used(parameters);
             effect.parameters.extend(flags.iter().map(|flag| ((*flag).into(), Parameter::Boolean(true))));
             let scene = Scene { lenses: vec![lens("a", vec![effect])], ..Scene::default() };
-            legends(&scene, &model, &[true], &[]).remove(0)
+            legends(&scene, &model, &[true], &model, &[]).remove(0)
         };
         let classes = of(&["counts"], &[("attribute", "yearOfConstruction"), ("scale", "natural")]);
         for (row, entry) in classes.rows().iter().zip(&classes.scale.legend) {

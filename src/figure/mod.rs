@@ -179,7 +179,7 @@ pub fn furniture_of(studio: &Studio, scene: &Scene, size: [u32; 2]) -> Result<La
     let legends = match figure.legend.is_some() {
         true => {
             let (seen, beside) = (studio.lenses_in_view(scene, size)?, studio.shown_beside(scene, size)?);
-            legend::legends(scene, &studio.model, &seen, &beside)
+            legend::legends(scene, studio.file(), &seen, &studio.model, &beside)
         }
         false => Vec::new(),
     };

@@ -375,14 +375,27 @@ impl ThematicScale {
             return;
         }
         let colors = self.object_colors(model);
-        for color in objects.iter().map(|&object| colors[object as usize]) {
-            match self.legend.iter_mut().find(|entry| entry.color == color) {
-                Some(entry) => entry.count += 1,
-                None if color == OTHER => {
-                    self.legend.push(LegendEntry { label: "other".into(), color, count: 1, kind: LegendKind::Other });
-                }
-                None => {}
-            }
+        objects.iter().for_each(|&object| self.count(colors[object as usize]));
+    }
+
+    /// Counts the objects of the city by the values that they have now.
+    pub fn count_now(&mut self, now: &CityModel) {
+        let Some(source) = Source::find(now, &self.attribute).filter(|source| !source.is_of_faces()) else { return };
+        self.legend.iter_mut().for_each(|entry| entry.count = 0);
+        for value in source.values(now) {
+            self.count(self.color_of(value, &now.strings));
+        }
+    }
+
+    /// Counts one more of a colour.
+    fn count(&mut self, color: Srgb) {
+        if let Some(entry) = self.legend.iter_mut().find(|entry| entry.color == color) {
+            entry.count += 1;
+            return;
+        }
+        let others = [(OTHER, "other", LegendKind::Other), (self.no_data, "no data", LegendKind::NoData)];
+        if let Some((_, label, kind)) = others.into_iter().find(|(own, ..)| *own == color) {
+            self.legend.push(LegendEntry { label: label.into(), color, count: 1, kind });
         }
     }
 

@@ -248,15 +248,20 @@ impl Studio {
         ShownCity { model: &self.model, geometries: &self.geometries, index: &self.index, number }
     }
 
-    /// Has all that asks where things are find what moves by timetables where it is at the moment of a scene, if the scene has something that
-    /// asks. Whoever draws a scene has it stand so; who asks before that, asks for it.
+    /// Has all that asks where things are find what moves by timetables where it is at the moment of a scene, and attributes that change as they
+    /// are then, if the scene has something that asks. Whoever draws a scene has it stand so; who asks before that, asks for it.
     pub fn stand_at(&mut self, scene: &Scene) {
-        if self.model.moves.is_empty() {
+        if self.model.moves.is_empty() && self.model.histories.is_empty() {
             return;
         }
         if let Some(at) = stance::asked_for(scene) {
             self.put_at(at);
         }
+    }
+
+    /// The city as its file has it.
+    pub fn file(&self) -> &Arc<CityModel> {
+        self.stance.file(&self.model)
     }
 
     /// The same at a moment.

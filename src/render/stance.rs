@@ -1,5 +1,6 @@
-//! The city of a studio where it stands at a moment: what moves by a timetable is put where it is then, on the host, for all that asks where things
-//! are - occluders, points of interest, best views, lenses that are made of objects or hang on them.
+//! The city of a studio as it is at a moment: what moves by a timetable is put where it is then, on the host, for all that asks where things
+//! are - occluders, points of interest, best views, lenses that are made of objects or hang on them -, and attributes that change have
+//! the values of then, for all that asks of these: choices, texts.
 //!
 //! The GPU has each of these objects as its file has it, and places it ([`crate::render::moving`]); of the moments that lenses show, the host
 //! goes by that of the scene.
@@ -9,7 +10,11 @@ use std::sync::{Arc, OnceLock};
 use glam::DQuat;
 
 use crate::{
-    city::{CityModel, decode_normal, encode_normal, model::Vertex, spatial::SpatialIndex},
+    city::{
+        CityModel, decode_normal, encode_normal,
+        model::{Geometry, Value, Vertex},
+        spatial::SpatialIndex,
+    },
     geom::Aabb,
     lens::{Lens, Placement as Attached, Region},
     render::{epochs::Epochs, moving::placement, standing::Placement},
@@ -22,6 +27,8 @@ use crate::{
 pub(super) struct Stance {
     /// The city as its file has it, once something of it was put elsewhere.
     file: Option<Arc<CityModel>>,
+    /// Its geometries that move, and what moves them.
+    movers: Vec<(u32, usize)>,
     /// When it stands so; `None`: as its file has it.
     at: Option<Moment>,
     /// How often it was put elsewhere.
@@ -51,11 +58,17 @@ impl Stance {
         }
         self.at = at;
         self.count += 1;
-        let file = self.file.get_or_insert_with(|| model.clone()).clone();
+        let file = match &self.file {
+            Some(file) => file.clone(),
+            None => {
+                self.movers = movers(model);
+                self.file.insert(model.clone()).clone()
+            }
+        };
         let model = Arc::make_mut(model);
+        give_values(model, &file, at);
         let mut tiles = Vec::new();
-        for geometry in 0..file.geometries.len() as u32 {
-            let Some(mover) = file.mover(file.geometries[geometry as usize].object) else { continue };
+        for &(geometry, mover) in &self.movers {
             put(model, &file, geometry, &placement(&file.moves[mover].pose(at)));
             tiles.extend(file.geometries[geometry as usize].tiles.clone());
         }
@@ -67,11 +80,35 @@ impl Stance {
     }
 }
 
-/// The moment that a scene asks for, if it has something that asks where objects are.
+/// The moment that a scene asks for, if it has something that asks where objects are, or which values they have.
 pub(super) fn asked_for(scene: &Scene) -> Option<Option<Moment>> {
     // What is wrong with operators is told by who resolves the scene.
     let own = || Epochs::new(scene).ok().and_then(|epochs| epochs.own.first().and_then(|(moment, _)| *moment));
     asks_where(scene).then(own)
+}
+
+/// The geometries of a model that move, ascending, and what moves each.
+fn movers(model: &CityModel) -> Vec<(u32, usize)> {
+    if model.moves.is_empty() {
+        return Vec::new();
+    }
+    let of = |(geometry, number): (&Geometry, u32)| Some((number, model.mover(geometry.object)?));
+    model.geometries.iter().zip(0..).filter_map(of).collect()
+}
+
+/// Has objects whose attributes change over time have what holds at a moment; at none what the file has, the last.
+fn give_values(model: &mut CityModel, file: &CityModel, at: Option<Moment>) {
+    for (name, history) in &file.histories {
+        for (object, values) in &history.of {
+            let own = &file.objects[*object as usize].attributes;
+            let Some(place) = own.clone().find(|i| file.attributes[*i as usize].name == *name) else { continue };
+            let held = |at: Moment| {
+                let after = values.partition_point(|(begin, _)| *begin <= Some(at));
+                after.checked_sub(1).and_then(|i| values[i].1).unwrap_or(Value::Null)
+            };
+            model.attributes[place as usize].value = at.map_or(file.attributes[place as usize].value, held);
+        }
+    }
 }
 
 /// Puts a geometry, which the file has elsewhere.

@@ -115,7 +115,7 @@ fn legends_count_what_is_gone() {
     let scene = parsed(&folder.0, &lens("only = \"removed\"")).expect("a scene");
     let studio = of_scene(&scene);
     let beside = studio.shown_beside(&scene, SIZE).expect("contents");
-    let [legend] = &legends(&scene, &studio.model, &[true], &beside)[..] else { panic!("one legend") };
+    let [legend] = &legends(&scene, &studio.model, &[true], &studio.model, &beside)[..] else { panic!("one legend") };
     let mut rows = String::new();
     legend.rows().iter().for_each(|row| write!(rows, "{}; ", row.label).expect("a text"));
     assert_eq!(rows, "removed (1); added (1); kept (1); other (2); ");

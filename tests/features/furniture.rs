@@ -92,7 +92,7 @@ fn swatches_have_the_colours_of_the_categories() {
         let scene = scene_of(thematic("function"));
         let furniture = figure::furniture_of(&studio, &scene, SIZE).expect("furniture").furniture;
         let drawn = figure::draw(&mut studio, &scene, &request(samples, false)).expect("a picture");
-        let legend = legends(&scene, &studio.model, &[true], &[]).remove(0);
+        let legend = legends(&scene, &studio.model, &[true], &studio.model, &[]).remove(0);
         let panels = panels(&furniture);
         let swatches: Vec<&Panel> =
             panels.iter().filter(|p| p.opacity == 1.0 && p.high[1] - p.low[1] == 9.0 && p.radius_px == 2.0).collect();

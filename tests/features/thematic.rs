@@ -58,7 +58,7 @@ fn draw(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
 }
 
 fn scale(studio: &Studio, scene: &Scene) -> ThematicScale {
-    legends(scene, &studio.model, &[true; 8], &[]).remove(0).scale
+    legends(scene, &studio.model, &[true; 8], &studio.model, &[]).remove(0).scale
 }
 
 /// Pixels of objects: the object, and the colour, sRGB.

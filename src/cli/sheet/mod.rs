@@ -217,7 +217,7 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
                 .on_ground(&cell.scene)
                 .and_then(|scene| Ok((studio.lenses_in_view(&scene, size)?, studio.shown_beside(&scene, size)?)));
             let (seen, beside) = shown.map_err(|error| failed(format!("cell {}: {error}", cell.name)))?;
-            legend::join(&mut legends, legend::legends(&cell.scene, &studio.model, &seen, &beside));
+            legend::join(&mut legends, legend::legends(&cell.scene, studio.file(), &seen, &studio.model, &beside));
         }
     }
     let planned = lay_out(sheet, &words, &legends, size).map_err(failed)?;

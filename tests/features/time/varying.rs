@@ -3,8 +3,9 @@
 use glam::DVec3;
 use veduta::{
     city::side_table::Join,
+    figure::legend::legends,
     geom::Shape,
-    lens::{Handled, Lens, Parameter},
+    lens::{Handled, Lens, Parameter, Region, chosen::Choice},
     render::{
         frame::Backend,
         picture::{Picture, Request, Studio},
@@ -60,6 +61,21 @@ fn scene_of(folder: &Folder, name: &str, table: &str, panes: &[Pane]) -> Scene {
     scene
 }
 
+/// With what holds over time.
+fn over_time(folder: &Folder, rows: &[Row], all: &[Pane]) -> Scene {
+    let year = |year: &Option<i64>| year.map_or_else(String::new, |year| year.to_string());
+    let line = |(pane, begin, end, what): &Row| format!("{pane},{},{},{}\n", USES[*what], year(begin), year(end));
+    let table = "pane,use,since,until\n".to_owned() + &rows.iter().map(line).collect::<String>();
+    scene_of(folder, "over-time", &table, all)
+}
+
+/// With what holds in a year.
+fn fixed(folder: &Folder, rows: &[Row], all: &[Pane], year: i64) -> Scene {
+    let own = (0..all.len()).filter_map(|pane| Some((pane, used_in(rows, pane, year)?)));
+    let lines = own.map(|(pane, what)| format!("{pane},{}\n", USES[what]));
+    scene_of(folder, &format!("in-{year}"), &("pane,use\n".to_owned() + &lines.collect::<String>()), all)
+}
+
 fn drawn(studio: &mut Studio, scene: &Scene, backend: Backend) -> Picture {
     let request = Request { aovs: ALL, backend, ..Request::plain([160, 130]) };
     studio.render(scene, &request).expect("a picture")
@@ -71,16 +87,8 @@ fn places_have_the_values_of_their_own_moments() {
     let folder = Folder::new("varying");
     let all = panes(10, &mut random);
     let rows = rows(&mut random, all.len());
-    let year = |year: &Option<i64>| year.map_or_else(String::new, |year| year.to_string());
-    let line = |(pane, begin, end, what): &Row| format!("{pane},{},{},{}\n", USES[*what], year(begin), year(end));
-    let table = "pane,use,since,until\n".to_owned() + &rows.iter().map(line).collect::<String>();
-    let over_time = scene_of(&folder, "over-time", &table, &all);
-    let fixed = |year: i64| {
-        // All categories are there, whatever holds: of a pane that is in no table.
-        let own = (0..all.len()).filter_map(|pane| Some((pane, used_in(&rows, pane, year)?)));
-        let lines = own.map(|(pane, what)| format!("{pane},{}\n", USES[what]));
-        scene_of(&folder, &format!("in-{year}"), &("pane,use\n".to_owned() + &lines.collect::<String>()), &all)
-    };
+    let over_time = over_time(&folder, &rows, &all);
+    let fixed = |year: i64| fixed(&folder, &rows, &all, year);
     let ball = Shape::Sphere { center: DVec3::new(0.4, 3.0, 5.0), radius: 3.0 };
     let set = |year: i64| Handled {
         handler: "set".to_owned(),
@@ -113,4 +121,50 @@ fn places_have_the_values_of_their_own_moments() {
         }
     }
     assert!(changed > 1000, "{changed} places look otherwise in the lens");
+}
+
+#[test]
+fn choices_and_legends_go_by_the_moment_of_the_scene() {
+    let mut random = Random(12);
+    let folder = Folder::new("varying-choice");
+    let all = panes(10, &mut random);
+    let rows = rows(&mut random, all.len());
+    let shops =
+        Choice { attribute: Some("use".to_owned()), values: Some(vec!["shop".to_owned()]), ..Choice::default() };
+    let with_lens = |scene: &Scene| {
+        let mut scene = scene.clone();
+        for used in &mut scene.style.effects {
+            used.parameters.insert("counts".to_owned(), Parameter::Boolean(true));
+        }
+        scene.lenses = vec![lens("shops", [Region::Thematic(shops.clone())], "invert")];
+        scene
+    };
+    let over_time = with_lens(&over_time(&folder, &rows, &all));
+    let mut studio = of_scene(&over_time);
+    let counted = |studio: &Studio, scene: &Scene| -> Vec<String> {
+        let found = legends(scene, studio.file(), &[true], &studio.model, &[]);
+        found[0].rows().iter().map(|row| row.label.clone()).collect()
+    };
+    let mut shown = std::collections::BTreeSet::new();
+    // Back and forth, and then as the file has it: the last that holds.
+    for year in [1650, 1750, 1820, 1700] {
+        let now = Scene { moment: Moment::of_year(year), ..over_time.clone() };
+        let still = with_lens(&fixed(&folder, &rows, &all, year));
+        let mut other = of_scene(&still);
+        for backend in BOTH {
+            let expected = drawn(&mut other, &still, backend);
+            let found = drawn(&mut studio, &now, backend);
+            assert!(found.rgba == expected.rgba, "{year}, {backend:?}");
+            shown.insert(found.rgba.concat());
+        }
+        let sorted = |mut rows: Vec<String>| {
+            rows.retain(|row| !row.ends_with("(0)"));
+            rows.sort();
+            rows
+        };
+        assert_eq!(sorted(counted(&studio, &now)), sorted(counted(&other, &still)), "{year}");
+    }
+    assert!(shown.len() > 2);
+    let last = Scene { moment: None, ..over_time.clone() };
+    assert!(drawn(&mut studio, &last, BOTH[0]).rgba == drawn(&mut of_scene(&last), &last, BOTH[0]).rgba);
 }
