@@ -13,8 +13,17 @@ pub struct Strings {
     text: String,
     /// Exclusive ends in `text`, by id.
     ends: Vec<usize>,
-    /// Open addressing over the texts: 1 + id, or 0 where free; a power of two, at most three quarters full.
-    slots: Vec<u32>,
+    /// Open addressing over the texts; a power of two, at most three quarters full.
+    slots: Vec<Slot>,
+}
+
+/// A place in the table of texts.
+#[derive(Clone, Copy, Debug, Default)]
+struct Slot {
+    /// 1 + id, or 0 where it is free.
+    id: u32,
+    /// Of its text: others are told from it without a look at that.
+    hash: u32,
 }
 
 impl Strings {
@@ -23,21 +32,22 @@ impl Strings {
         if self.ends.len() * 4 >= self.slots.len() * 3 {
             self.resize((self.slots.len() * 2).max(64));
         }
-        let slot = self.slot_of(text);
-        if let Some(id) = self.slots[slot].checked_sub(1) {
+        let hash = hash_of(text);
+        let slot = self.slot_of(text, hash);
+        if let Some(id) = self.slots[slot].id.checked_sub(1) {
             return StringId(id);
         }
         let id = u32::try_from(self.ends.len()).ok().filter(|id| *id < u32::MAX).expect("more than 2^32 strings");
         self.text.push_str(text);
         self.ends.push(self.text.len());
-        self.slots[slot] = id + 1;
+        self.slots[slot] = Slot { id: id + 1, hash };
         StringId(id)
     }
 
     /// The id of `text`, if it was ever interned.
     pub fn find(&self, text: &str) -> Option<StringId> {
-        let slot = (!self.slots.is_empty()).then(|| self.slot_of(text))?;
-        self.slots[slot].checked_sub(1).map(StringId)
+        let slot = (!self.slots.is_empty()).then(|| self.slot_of(text, hash_of(text)))?;
+        self.slots[slot].id.checked_sub(1).map(StringId)
     }
 
     /// All texts, in the order of their ids.
@@ -66,33 +76,34 @@ impl Strings {
     }
 
     /// Where `text` stands in `slots`, or the free slot where it would.
-    fn slot_of(&self, text: &str) -> usize {
-        let mut slot = home(text, self.slots.len());
-        while let Some(id) = self.slots[slot].checked_sub(1)
-            && self.at(id as usize) != text
-        {
-            slot = (slot + 1) & (self.slots.len() - 1);
+    fn slot_of(&self, text: &str, hash: u32) -> usize {
+        let mut place = hash as usize & (self.slots.len() - 1);
+        loop {
+            let slot = self.slots[place];
+            if slot.id == 0 || (slot.hash == hash && self.at(slot.id as usize - 1) == text) {
+                return place;
+            }
+            place = (place + 1) & (self.slots.len() - 1);
         }
-        slot
     }
 
     fn resize(&mut self, count: usize) {
-        let mut slots = vec![0; count];
-        for (id, text) in (1..).zip(self.iter()) {
-            let mut slot = home(text, count);
-            while slots[slot] != 0 {
-                slot = (slot + 1) & (count - 1);
+        let mut slots = vec![Slot::default(); count];
+        for slot in self.slots.iter().filter(|slot| slot.id != 0) {
+            let mut place = slot.hash as usize & (count - 1);
+            while slots[place].id != 0 {
+                place = (place + 1) & (count - 1);
             }
-            slots[slot] = id;
+            slots[place] = *slot;
         }
         give_back(std::mem::replace(&mut self.slots, slots));
     }
 }
 
-/// Where looking for `text` begins in a table of `count` slots, a power of two.
-fn home(text: &str, count: usize) -> usize {
+/// What tells where looking for a text begins: in all its bits.
+fn hash_of(text: &str) -> u32 {
     let hash = FxBuildHasher.hash_one(text).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    (hash ^ (hash >> 32)) as usize & (count - 1)
+    (hash ^ (hash >> 32)) as u32
 }
 
 #[cfg(test)]

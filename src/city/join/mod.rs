@@ -50,6 +50,9 @@ impl CityModel {
         let mut added = Added::new(self.objects.len());
         let valid = valid_columns(&table, join)?;
         let is_over_time = valid != [None, None];
+        if !is_over_time {
+            added.values.reserve(table.most_rows().min(self.objects.len()) * names.len());
+        }
         let mut over_time: FxHashMap<u32, Vec<Row>> = FxHashMap::default();
         let mut wrong: Option<LoadError> = None;
         table.each_row(|key, cells| {

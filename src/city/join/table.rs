@@ -2,7 +2,7 @@
 
 use std::{borrow::Cow, path::Path};
 
-use csv::ByteRecord;
+use csv::StringRecord;
 use serde_json::{Map, Value};
 
 use crate::city::load::error::LoadError;
@@ -53,7 +53,7 @@ struct Collection {
 /// The cells of a row.
 pub enum Cells<'a> {
     /// The record, and the column that is the key.
-    Csv(&'a ByteRecord, usize),
+    Csv(&'a StringRecord, usize),
     /// Properties, the names of columns, and that of the key.
     Properties(&'a Map<String, Value>, &'a [String]),
 }
@@ -85,9 +85,8 @@ impl<'a> Table<'a> {
         // What stands in the head most often; with none there is one column.
         let delimiter = [b',', b';', b'\t', b'|'].into_iter().rev().max_by_key(|d| count(*d)).unwrap_or(b',');
         let mut reader = csv::ReaderBuilder::new().delimiter(delimiter).from_reader(bytes);
-        let head = reader.byte_headers().map_err(|error| of_csv(file, &error))?;
-        let names: Result<Vec<String>, LoadError> = head.iter().map(|name| text_of(file, 1, name)).collect();
-        let mut columns: Vec<String> = names?.into_iter().map(|name| name.trim().to_owned()).collect();
+        let head = reader.headers().map_err(|error| of_csv(file, &error))?;
+        let mut columns: Vec<String> = head.iter().map(|name| name.trim().to_owned()).collect();
         let at = match key {
             "" => Some(0),
             key => columns.iter().position(|name| name == key),
@@ -120,18 +119,24 @@ impl<'a> Table<'a> {
         Ok(Self { file, rows: Rows::Features(features), key: key.to_owned(), columns })
     }
 
+    /// Rows, at most.
+    pub fn most_rows(&self) -> usize {
+        match &self.rows {
+            Rows::Csv { bytes, .. } => bytes.iter().filter(|byte| **byte == b'\n').count() + 1,
+            Rows::Features(features) => features.len(),
+        }
+    }
+
     /// Hands over each row that has a key.
     pub fn each_row(&self, mut row: impl FnMut(&str, Cells)) -> Result<(), LoadError> {
         match &self.rows {
             Rows::Csv { bytes, delimiter, key } => {
                 let mut reader = csv::ReaderBuilder::new().delimiter(*delimiter).from_reader(*bytes);
-                let mut record = ByteRecord::new();
-                while reader.read_byte_record(&mut record).map_err(|error| of_csv(self.file, &error))? {
-                    let line = record.position().map_or(0, csv::Position::line);
-                    for cell in &record {
-                        utf8(self.file, line, cell)?;
-                    }
-                    let own = utf8(self.file, line, record.get(*key).unwrap_or_default())?.trim();
+                let mut record = StringRecord::new();
+                // Rows count from the one behind it.
+                reader.headers().map_err(|error| of_csv(self.file, &error))?;
+                while reader.read_record(&mut record).map_err(|error| of_csv(self.file, &error))? {
+                    let own = record.get(*key).unwrap_or_default().trim();
                     if !own.is_empty() {
                         row(own, Cells::Csv(&record, *key));
                     }
@@ -161,9 +166,8 @@ impl Cells<'_> {
         match self {
             Self::Csv(record, key) => {
                 let others = record.iter().enumerate().filter(|(column, _)| column != key);
-                for (column, (_, bytes)) in others.enumerate() {
-                    let text = std::str::from_utf8(bytes).unwrap_or_default().trim();
-                    if let Some(value) = cell_of(text) {
+                for (column, (_, text)) in others.enumerate() {
+                    if let Some(value) = cell_of(text.trim()) {
                         cell(column, value);
                     }
                 }
@@ -216,15 +220,6 @@ fn no_column(file: &Path, key: &str, columns: &[String]) -> LoadError {
     LoadError::new(file, format!("has no column \"{key}\"; it has {}{more}", names.join(", ")))
 }
 
-fn utf8<'b>(file: &Path, line: u64, bytes: &'b [u8]) -> Result<&'b str, LoadError> {
-    std::str::from_utf8(bytes)
-        .map_err(|_| LoadError::at(file, format!("line {line}"), "is no UTF-8; a table saved as UTF-8 would be right"))
-}
-
-fn text_of(file: &Path, line: u64, bytes: &[u8]) -> Result<String, LoadError> {
-    utf8(file, line, bytes).map(str::to_owned)
-}
-
 /// What is wrong with a table of CSV.
 fn of_csv(file: &Path, error: &csv::Error) -> LoadError {
     let place = error.position().map_or_else(String::new, |at| format!("line {}", at.line()));
@@ -232,6 +227,7 @@ fn of_csv(file: &Path, error: &csv::Error) -> LoadError {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("has {len} cells; {expected_len}, as the head has, would be right")
         }
+        csv::ErrorKind::Utf8 { .. } => "is no UTF-8; a table saved as UTF-8 would be right".to_owned(),
         _ => error.to_string(),
     };
     LoadError::at(file, place, message)
