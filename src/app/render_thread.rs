@@ -385,7 +385,7 @@ fn levels_of(model: &CityModel) -> Vec<String> {
 
 /// The same city on another device.
 fn renewed(studio: &Studio, spec: &CitySpec) -> Result<Studio, RenderError> {
-    let mut again = Studio::new(Gpu::open()?, studio.model.clone(), spec)?;
+    let mut again = Studio::new(Gpu::open()?, studio.file().clone(), spec)?;
     (again.reading, again.load) = (studio.reading.clone(), studio.load.clone());
     again.interrupt = studio.interrupt.clone();
     Ok(again)

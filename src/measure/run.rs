@@ -277,7 +277,7 @@ fn start(
     for round in 0..starts {
         for (i, variant) in trial.variants.iter().enumerate() {
             watch(Step::Starting, round * trial.variants.len() + i, total);
-            let mut studio = Studio::new(Gpu::open()?, Arc::clone(&setup.studio.model), setup.city)?;
+            let mut studio = Studio::new(Gpu::open()?, Arc::clone(setup.studio.file()), setup.city)?;
             let before = studio.renderer.gpu.allocated_bytes();
             let first_ms = timed(&mut studio, &variant.shot)?;
             let bytes = studio.renderer.gpu.allocated_bytes() - before;

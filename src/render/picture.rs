@@ -158,7 +158,7 @@ pub struct Picture {
 pub struct Studio {
     /// The renderer.
     pub renderer: Renderer,
-    /// The city.
+    /// The city as it is at the moment of what was drawn last ([`Self::stand_at`]).
     pub model: Arc<CityModel>,
     /// Its geometries that are shown.
     pub geometries: Vec<u32>,
@@ -320,7 +320,7 @@ impl Studio {
         };
         let site = match sun.place {
             Some(place) => Site::given(place.x, place.y),
-            None => Site::of_model(self.model.crs.as_deref(), self.extent().center().truncate())
+            None => Site::of_model(self.file().crs.as_deref(), self.extent().center().truncate())
                 .map_err(RenderError::Scene)?,
         };
         let offset_h = sun.utc_offset_h.unwrap_or_else(|| site.standard_offset_h());
@@ -355,7 +355,7 @@ impl Studio {
 
     /// Box around the shown city, without the plain ground; empty for an empty city.
     pub fn extent(&self) -> Aabb {
-        self.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(self.model.geometries[g as usize].bounds))
+        self.geometries.iter().fold(Aabb::EMPTY, |all, &g| all.union(self.file().geometries[g as usize].bounds))
     }
 
     /// The scene's camera, or a good first view of the city.
@@ -363,9 +363,9 @@ impl Studio {
         scene.camera.unwrap_or_else(|| {
             // Tile by tile: the box of a long or slanting object is mostly empty. Terrain may leave the picture.
             let tiles_of = |wanted: &dyn Fn(bool) -> bool| -> Vec<Aabb> {
-                let kept = self.geometries.iter().map(|&g| &self.model.geometries[g as usize]);
-                kept.filter(|g| wanted(self.model.objects[g.object as usize].class.is_ground()))
-                    .flat_map(|g| &self.model.tiles[g.tiles.start as usize..g.tiles.end as usize])
+                let kept = self.geometries.iter().map(|&g| &self.file().geometries[g as usize]);
+                kept.filter(|g| wanted(self.file().objects[g.object as usize].class.is_ground()))
+                    .flat_map(|g| &self.file().tiles[g.tiles.start as usize..g.tiles.end as usize])
                     .map(|tile| tile.bounds)
                     .collect()
             };
@@ -544,11 +544,12 @@ impl Studio {
     /// Puts the city on the GPU anew, with block models or without.
     fn set_city(&mut self, facades: bool, blocks: bool) -> Result<(), RenderError> {
         let (geometries, beside) = self.moving.drawn_still(self.is_still, &self.geometries);
-        let derived = || derive(&self.model, geometries, &Derive { form: Form::Lod1, parts: true });
+        let model = self.stance.file(&self.model);
+        let derived = || derive(model, geometries, &Derive { form: Form::Lod1, parts: true });
         let blocks = blocks.then(derived);
-        let coplanar = coplanar_triangles(&self.model, geometries);
+        let coplanar = coplanar_triangles(model, geometries);
         let ground = self.ground.as_deref();
-        let shown = Shown { coplanar: &coplanar, ground, facades, beside, ..Shown::of(&self.model, geometries) };
+        let shown = Shown { coplanar: &coplanar, ground, facades, beside, ..Shown::of(model, geometries) };
         self.renderer.set_city(&shown, blocks.as_ref().map(|blocks| &blocks.model))?;
         self.insets.clear();
         Ok(())
@@ -571,8 +572,8 @@ impl Studio {
             return Ok(());
         }
         let (geometries, beside) = self.moving.drawn_still(self.is_still, &self.geometries);
-        let ground = self.ground.as_deref();
-        let shown = Shown { ground, facades, beside, ..Shown::of(&self.model, geometries) };
+        let (model, ground) = (self.stance.file(&self.model), self.ground.as_deref());
+        let shown = Shown { ground, facades, beside, ..Shown::of(model, geometries) };
         Ok(self.renderer.set_edges(&shown)?)
     }
 

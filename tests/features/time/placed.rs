@@ -97,7 +97,7 @@ fn scene(folder: &Folder, file: &str, rest: &str) -> Scene {
 }
 
 /// Holds what moves to a city in which it stands so: where it is, its turn in degrees, its scale.
-fn compare(pose: [f64; 5], backend: Backend) {
+fn compare(pose: [f64; 5], backend: Backend, every: usize) {
     let folder = Folder::new(&format!("tram-placed-{}", pose[3]));
     let [x, y, z, yaw, scale] = pose;
     let turn = DQuat::from_rotation_z(yaw.to_radians());
@@ -111,7 +111,7 @@ fn compare(pose: [f64; 5], backend: Backend) {
     );
     folder.write("day.csv", table);
     let mut wrong = Vec::new();
-    for (name, lens) in LENSES {
+    for (name, lens) in LENSES.iter().step_by(every) {
         let time = format!("timetables = [\"day.csv\"]\n[time]\nat = \"2025-06-01T08:00:10\"\n{lens}");
         let [still, moving] = [scene(&folder, "still.city.json", lens), scene(&folder, "moving.city.json", &time)];
         let drawn = [still, moving].map(|scene| {
@@ -132,8 +132,9 @@ fn compare(pose: [f64; 5], backend: Backend) {
 
 #[test]
 fn what_moves_is_as_if_it_stood_there() {
-    compare([30.0, 24.0, 0.0, 0.0, 1.0], Backend::Uber);
-    compare([31.0, 22.0, 1.5, 25.0, 1.2], Backend::Specialised);
+    // The other back end draws every third of them.
+    compare([30.0, 24.0, 0.0, 0.0, 1.0], Backend::Uber, 3);
+    compare([31.0, 22.0, 1.5, 25.0, 1.2], Backend::Specialised, 1);
 }
 
 #[test]
