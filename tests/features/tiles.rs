@@ -11,7 +11,7 @@ use veduta::{
     scene::{Scene, StyleLook},
 };
 
-use crate::studio::of_scene;
+use crate::studio::{is_tried, of_scene};
 
 /// All of what pictures are compared by.
 const ALL: Aovs = Aovs { depth: true, object_id: true, normal: true, lens_mask: true };
@@ -102,11 +102,11 @@ const SCENES: [&str; 22] = [
 #[test]
 fn tiles_make_the_picture_that_is_made_in_one_piece() {
     let mut all = Differences::default();
-    for (i, name) in SCENES.into_iter().enumerate() {
+    for (i, name) in SCENES.into_iter().enumerate().filter(|(i, _)| is_tried(*i, 2)) {
         let scene = scene(name);
         let mut studio = of_scene(&scene);
         let samples = if i % 3 == 0 { 4 } else { 1 };
-        let backend = if i % 2 == 0 { Backend::Specialised } else { Backend::Uber };
+        let backend = if i / 2 % 2 == 0 { Backend::Specialised } else { Backend::Uber };
         let transparent = i % 5 == 0;
         let request = Request { samples, transparent, aovs: ALL, backend, ..Request::plain(SIZE) };
         let found = differences(&mut studio, &scene, &request, 64 + 16 * (i as u32 % 5));
