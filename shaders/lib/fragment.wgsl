@@ -18,14 +18,15 @@ struct Fragment {
 }
 
 fn sight_of(fragment: Fragment) -> Sight {
-    return Sight(fragment.pixel, fragment.depth, fragment.ray, -fragment.position.z, fragment.position, fragment.is_parallel,
+    return Sight(fragment.pixel, fragment.depth, fragment.ray, distance_of_depth(fragment.depth), fragment.position, fragment.is_parallel,
                  fragment.object, fragment.off);
 }
 
 // The fragment at a place of the target.
 fn fragment_at(at: vec2f, depth: f32, code: u32) -> Fragment {
-    let ray = ray_of_pixel(at);
     let distance = distance_of_depth(depth);
+    look_at_distance(distance);
+    let ray = ray_of_pixel(at);
     let position = ray.origin + distance * ray.direction;
     let up = view.view_from_world[2];       // dot(column, p) = p's share of the world's z
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + dot(up, position);

@@ -167,7 +167,6 @@ fn recorded(word: u32) -> f32 {
 fn composite(in: Corner) -> Composite {
     take(in);
     let pixel = vec2i(in.clip.xy);
-    let ray = ray_of_pixel(in.clip.xy);
     let head = atomicLoad(&heads[FIRST_HEAD + u32(pixel.y) * u32(view.size.x) + u32(pixel.x)]);
     var color = vec3f(0.0);
     var through = 1.0;
@@ -227,6 +226,8 @@ fn composite(in: Corner) -> Composite {
             let depth = bitcast<f32>(node.key.x);
             let normal = node.key.z;
             let code = node.key.y & NODE_CODE;
+            look_at_distance(distance_of_depth(depth));
+            let ray = ray_of_pixel(in.clip.xy);
             var point = point_of(pixel, ray, depth, vec2u(code, normal), unpacked(node.light));
             point.base = point.natural;
             if TEXTURED {
@@ -280,7 +281,10 @@ fn composite(in: Corner) -> Composite {
         through *= rest;
         // Which of the layers is the shown surface is not known: it is what is opaque.
         if through <= 0.5 && shown.x == 0u {
-            let point = point_at(pixel, ray, textureLoad(scene_depth, pixel, 0));
+            let depth = textureLoad(scene_depth, pixel, 0);
+            look_at_distance(distance_of_depth(depth));
+            let ray = ray_of_pixel(in.clip.xy);
+            let point = point_at(pixel, ray, depth);
             write_classes(pixel, point, classes_at(sight_of_point(point, ray), in.part.x));
         }
     }

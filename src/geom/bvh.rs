@@ -246,6 +246,29 @@ impl Bvh {
         }
     }
 
+    /// The hierarchy as plain data, the root first, and the items of its leaves in their order; no more than `most_depth` boxes lie in each
+    /// other, for a walk whose stack is that long. `boxes`: those that it was built from.
+    pub fn flat(&self, most_depth: usize, boxes: &[Aabb]) -> (Vec<FlatNode>, Vec<u32>) {
+        let mut deepest = 0;
+        let mut stack: Vec<(&Bvh2Node, usize)> = self.tree.nodes.first().map(|root| (root, 1)).into_iter().collect();
+        while let Some((node, depth)) = stack.pop() {
+            deepest = deepest.max(depth);
+            if !node.is_leaf() {
+                stack.extend(self.children(node).map(|child| (child, depth + 1)));
+            }
+        }
+        if deepest > most_depth {
+            return halved(self.tree.primitive_indices.clone(), boxes);
+        }
+        let flat = |node: &Bvh2Node| {
+            let own = bounds(node);
+            let moved = Aabb { min: own.min + self.origin, max: own.max + self.origin };
+            let count = if node.is_leaf() { node.prim_count } else { 0 };
+            FlatNode::new(&moved, node.first_index, count)
+        };
+        (self.tree.nodes.iter().map(flat).collect(), self.tree.primitive_indices.clone())
+    }
+
     fn items(&self, leaf: &Bvh2Node) -> &[u32] {
         let first = leaf.first_index as usize;
         &self.tree.primitive_indices[first..first + leaf.prim_count as usize]
@@ -255,6 +278,55 @@ impl Bvh {
         let first = node.first_index as usize;
         [&self.tree.nodes[first], &self.tree.nodes[first + 1]]
     }
+}
+
+/// A box of a hierarchy as plain data.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatNode {
+    /// Its corners, rounded outwards.
+    pub min: [f32; 3],
+    /// The same.
+    pub max: [f32; 3],
+    /// Of an inner one: the first of its two boxes; of a leaf: its first item.
+    pub first: u32,
+    /// Items of a leaf; 0: an inner one.
+    pub count: u32,
+}
+
+impl FlatNode {
+    fn new(bounds: &Aabb, first: u32, count: u32) -> Self {
+        let rounded = round_outwards(*bounds, DVec3::ZERO);
+        Self { min: rounded.min.to_array(), max: rounded.max.to_array(), first, count }
+    }
+}
+
+/// Items of a leaf of a halved hierarchy.
+const HALVED_LEAF: usize = 4;
+
+/// A hierarchy that halves items at the middle of their longest side: never deeper than their number asks for.
+fn halved(mut items: Vec<u32>, boxes: &[Aabb]) -> (Vec<FlatNode>, Vec<u32>) {
+    let mut nodes = vec![FlatNode { min: [0.0; 3], max: [0.0; 3], first: 0, count: 0 }];
+    let mut open = vec![(0, 0, items.len())];
+    while let Some((node, from, to)) = open.pop() {
+        let own = &mut items[from..to];
+        let all = own.iter().fold(Aabb::EMPTY, |all, &item| all.union(boxes[item as usize]));
+        if own.len() <= HALVED_LEAF {
+            nodes[node] = FlatNode::new(&all, from as u32, own.len() as u32);
+            continue;
+        }
+        let size = all.size();
+        let axis = if size.x >= size.y && size.x >= size.z { 0 } else { 1 + usize::from(size.z > size.y) };
+        let middle = own.len() / 2;
+        own.select_nth_unstable_by(middle, |a, b| {
+            let at = |item: &u32| boxes[*item as usize].center()[axis];
+            at(a).total_cmp(&at(b))
+        });
+        let first = nodes.len();
+        nodes[node] = FlatNode::new(&all, first as u32, 0);
+        nodes.extend([nodes[node]; 2]);
+        open.extend([(first, from, from + middle), (first + 1, from + middle, to)]);
+    }
+    (nodes, items)
 }
 
 /// Equal boxes from so many on are one to the builder.

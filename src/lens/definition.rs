@@ -5,7 +5,7 @@ use crate::{
     lens::{
         best_view::BestView, body::LensBody, border::Border, class::Class, content::Content, deform::Deform,
         effect_use::EffectUse, handled::Handled, kind::LensKind, occluders::Occluders, placement::Placement,
-        region::Region, rendering::Rendering, sprite::LensSprite,
+        ray::RayLens, region::Region, rendering::Rendering, sprite::LensSprite,
     },
 };
 
@@ -106,6 +106,11 @@ impl Lens {
     /// See [`LensKind::deform`].
     pub fn deform(&self) -> Option<&Deform> {
         self.kind.deform()
+    }
+
+    /// See [`LensKind::ray`].
+    pub fn ray(&self) -> Option<&RayLens> {
+        self.kind.ray()
     }
 
     /// See [`LensKind::best_view`].

@@ -25,6 +25,8 @@ pub mod occluders;
 pub mod own_region;
 pub mod placement;
 pub mod ramp;
+pub mod ray;
+pub mod ray_path;
 pub mod region;
 pub mod relief;
 pub mod rendering;

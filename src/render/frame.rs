@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use crate::{
+    lens::ray_path::RayPaths,
     render::{
         eye::PictureTile, furniture::Furniture, moved::Moved, operations::Operations, solids::SolidTable,
         volume::LensVolume,
@@ -40,6 +41,8 @@ pub struct FrameInput<'a> {
     pub volumes: &'a [LensVolume],
     /// How many lenses the scene has, disabled ones included.
     pub lens_count: u32,
+    /// How lenses bend rays.
+    pub rays: &'a RayPaths,
     /// The solids among them.
     pub solids: &'a Arc<SolidTable>,
     /// What the context and the lenses do.

@@ -334,6 +334,79 @@ pub struct City {
     pub scale: f32,
 }
 
+/// `lib/bent-rays.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct RayLens {
+    pub center: [f32; 2],
+    pub radius: f32,
+    pub border: f32,
+    pub distance: f32,
+    pub until: f32,
+    pub power: f32,
+    pub kind: u32,
+    pub outline: u32,
+    pub first_knot: u32,
+    pub knots: u32,
+    pub angle: f32,
+}
+
+/// `lib/bent-rays.wgsl`: kinds of lenses that bend rays.
+pub const RAY_PLANE: u32 = 0;
+/// `lib/bent-rays.wgsl`.
+pub const RAY_SAMPLED: u32 = 1;
+/// `lib/bent-rays.wgsl`.
+pub const RAY_ANGULAR: u32 = 2;
+/// `lib/bent-rays.wgsl`.
+pub const RAY_HEMISPHERICAL: u32 = 3;
+
+/// `lib/bent-rays.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct RayEvent {
+    pub distance: f32,
+    pub lens: u32,
+    pub ends: u32,
+    pub reserved: u32,
+}
+
+/// Lenses that bend rays, and what they have of knots.
+const RAY_LENSES: usize = crate::lens::ray_path::MOST_RAY_LENSES;
+const RAY_KNOTS: usize = RAY_LENSES * crate::lens::ray::SAMPLED_KNOTS;
+
+/// `lib/bent-rays.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct RayLenses {
+    pub images: u32,
+    pub planes: u32,
+    pub events: u32,
+    pub reserved: u32,
+    pub lenses: [RayLens; RAY_LENSES],
+    pub along: [RayEvent; 2 * RAY_LENSES],
+    pub knots: [[f32; 4]; RAY_KNOTS],
+}
+
+/// `pass/rays.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct RayCity {
+    pub from_view_x: [f32; 4],
+    pub from_view_y: [f32; 4],
+    pub from_view_z: [f32; 4],
+    pub eye: [i32; 3],
+    pub surfaces: u32,
+    pub eye_fraction: [f32; 3],
+    pub number: u32,
+    pub eye_in_boxes: [f32; 3],
+    pub boxes: u32,
+    pub triangles: u32,
+    pub pad_0: [u32; 3],
+    pub world_x: [f32; 4],
+    pub world_y: [f32; 4],
+    pub world_z: [f32; 4],
+}
+
 /// `pass/lines.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -543,6 +616,7 @@ mod tests {
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
+        let rays = Module::Rays(None);
         let checks = [
             (
                 &Module::Geometry(None),
@@ -620,6 +694,37 @@ mod tests {
                     pad_0,
                 }),
             ),
+            (&rays, host!(RayLens {
+                center,
+                radius,
+                border,
+                distance,
+                until,
+                power,
+                kind,
+                outline,
+                first_knot,
+                knots,
+                angle
+            })),
+            (&rays, host!(RayEvent { distance, lens, ends, reserved })),
+            (&rays, host!(RayLenses { images, planes, events, reserved, lenses, along, knots })),
+            (&rays, host!(RayCity {
+                from_view_x,
+                from_view_y,
+                from_view_z,
+                eye,
+                surfaces,
+                eye_fraction,
+                number,
+                eye_in_boxes,
+                boxes,
+                triangles,
+                pad_0,
+                world_x,
+                world_y,
+                world_z
+            })),
             (&cut, host!(City { linear, from_whole, number, from_fraction, first_surface, to, scale })),
             (
                 &shade,

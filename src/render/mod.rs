@@ -7,6 +7,7 @@
 mod bake;
 pub mod bands;
 mod bare;
+mod bent;
 mod best_views;
 mod cells;
 mod cities;
@@ -70,6 +71,7 @@ mod plans;
 mod programs;
 mod refinery;
 mod regions;
+mod ray_meshes;
 pub mod renderer;
 pub mod request;
 mod resolve;

@@ -187,6 +187,8 @@ pub struct Operations {
     pub varies: bool,
     /// The moments whose suns shine somewhere, the scene's own first; empty: one sun is everywhere.
     pub suns: Vec<Option<Moment>>,
+    /// Whether lenses bend the rays of some pixels.
+    pub bends: bool,
     /// Which objects of the scene's own city that is.
     pub presence: Arc<[Presence]>,
     /// What lenses do to the moment, bottom lens first.
@@ -308,6 +310,11 @@ impl Operations {
         }
     }
 
+    /// Has rays of some pixels be bent.
+    pub fn bend_rays(&mut self) {
+        (self.bends, self.uber.bends) = (true, true);
+    }
+
     /// The same for a frame under the sun of one of its moments.
     pub fn under_sun(&self, number: usize) -> Self {
         let mut own = self.clone();
@@ -389,9 +396,9 @@ impl Operations {
     /// What shading has to do outside all lenses.
     pub fn context_plan(&self, haze: bool) -> Plan {
         let steps = self.steps(&[], |_| None);
-        let Self { timed, partly, moves, varies, .. } = *self;
+        let Self { timed, partly, moves, varies, bends, .. } = *self;
         let lit = !self.suns.is_empty();
-        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, moves, varies, lit, ..Plan::default() }
+        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, moves, varies, bends, lit, ..Plan::default() }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
@@ -429,9 +436,9 @@ impl Operations {
         };
         let epochs = self.epochs.iter().filter_map(epoch).collect();
         let lines = draws_lines(&steps);
-        let Self { timed, partly, moves, varies, .. } = *self;
+        let Self { timed, partly, moves, varies, bends, .. } = *self;
         let lit = !self.suns.is_empty();
-        let of_time = Plan { timed, partly, moves, varies, lit, epochs, ..Plan::default() };
+        let of_time = Plan { timed, partly, moves, varies, bends, lit, epochs, ..Plan::default() };
         Plan { lenses, steps, haze, masks, lines, contents, ..of_time }
     }
 
@@ -476,7 +483,7 @@ impl Operations {
                 uses: vec![(operation.lens, operation.parameters + slots_of(operation))],
                 parameters: operation.parameters,
                 reach: self.parameters[operation.parameters as usize][0].ceil() as u32,
-                plan: Plan { steps: steps.collect(), haze, ..Plan::default() },
+                plan: Plan { steps: steps.collect(), haze, bends: self.bends, ..Plan::default() },
             }
         };
         let mut filters: Vec<Filter> = Vec::new();

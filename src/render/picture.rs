@@ -871,6 +871,7 @@ fn input<'a>(scene: &Scene, request: &Request, resolved: &'a Resolved, tile: Pic
         transparent: request.transparent,
         haze: HAZE,
         volumes: &resolved.volumes,
+        rays: &resolved.rays,
         solids: &resolved.solids,
         lens_count: scene.lenses.len() as u32,
         operations: &resolved.operations,

@@ -229,7 +229,7 @@ impl<'a> FramePlan<'a> {
 
     /// Whether lists of lenses are narrowed to what each tile shows: of what is opaque, by the uber back end.
     pub fn narrows(&self) -> bool {
-        let is_uber = self.input.technique == Technique::Accumulate;
+        let is_uber = self.input.technique == Technique::Accumulate && self.input.rays.is_empty();
         self.settings.narrows_lists && is_uber && self.plans.looks_at_many() && self.plans.layering.is_none()
     }
 

@@ -3,12 +3,16 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
-    city::{CityModel, lifetime::Lifetimes, load::LoadOptions},
+    city::{CityModel, lifetime::Lifetimes, load::LoadOptions, spatial::SpatialIndex},
     geom::Aabb,
-    lens::solids::{ShownCity, Solids},
+    lens::{
+        ray::RayLens,
+        ray_path::{MOST_RAY_LENSES, PictureFrame, RayPaths},
+        solids::{ShownCity, Solids},
+    },
     render::{
         city_facts::CityFacts,
         content_cities::{self, ContentCities, SceneContents},
@@ -96,6 +100,8 @@ pub(super) struct Resolved {
     pub operations: Operations,
     pub contents: SceneContents,
     pub deformations: SceneDeformations,
+    /// How lenses bend rays.
+    pub rays: RayPaths,
     /// Suns of several moments, the scene's own first, each with what the operations are in its frame; empty: there is one.
     pub suns: Vec<(Sun, Operations)>,
 }
@@ -149,7 +155,32 @@ impl Surroundings<'_> {
         let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved)).union(moving.bounds);
         let view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
-        Ok(Resolved { view, volumes, solids, operations, contents, deformations, suns: Vec::new() })
+        let rays = self.rays(scene, &view)?;
+        if !rays.is_empty() {
+            operations.bend_rays();
+        }
+        Ok(Resolved { view, volumes, solids, operations, contents, deformations, rays, suns: Vec::new() })
+    }
+
+    /// The lenses that bend rays.
+    fn rays(&self, scene: &Scene, view: &View) -> Result<RayPaths, ResolveError> {
+        let lenses: Vec<(u32, &RayLens)> =
+            (0..).zip(&scene.lenses).filter(|(_, lens)| lens.enabled).filter_map(|(i, lens)| Some((i, lens.ray()?))).collect();
+        if lenses.len() > MOST_RAY_LENSES {
+            return Err(ResolveError::Scene(format!(
+                "{} lenses bend rays; one picture takes {MOST_RAY_LENSES}",
+                lenses.len()
+            )));
+        }
+        let half = view.half_extent();
+        let frame = PictureFrame { half, is_parallel: view.is_orthographic(), near: view.camera.near_m };
+        let shown = |across: DVec2| {
+            let size = DVec2::new(view.size[0].into(), view.size[1].into());
+            let pixel = DVec2::new(0.5 + 0.5 * across.x / half.x, 0.5 - 0.5 * across.y / half.y) * size;
+            let index = self.city.index.get_or_init(|| SpatialIndex::build(self.city.model, self.city.geometries));
+            Some(index.hit(self.city.model, &view.ray(pixel))?.t)
+        };
+        Ok(RayPaths::new(&lenses, &frame, shown))
     }
 
     /// The volumes of a scene's enabled lenses.

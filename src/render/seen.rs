@@ -4,6 +4,7 @@ use crate::{
     geom::Aabb,
     lens::LensSprite,
     render::{
+        bent,
         eye::PictureTile,
         frame::FrameInput,
         screen_bound::ScreenBound,
@@ -72,12 +73,15 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom, idl
     let mut seen: Vec<SeenVolume> = Vec::new();
     let (mut words, mut lists, mut counts) = (own.words, 0, own.counts);
     let masks = input.masks && input.sample == 0;
+    let bent = bent::parts(input.rays, &input.view, input.tile).into_iter().reduce(ScreenBound::with);
     let is_busy = |volume: &LensVolume| idle.binary_search(&volume.lens).is_err();
     for (index, volume) in input.volumes.iter().enumerate().filter(|(_, volume)| is_busy(volume)) {
         // Other classes may be anywhere in the own space of a sprite.
         let has_any_part = masks && volume.has_own_eye();
         let any_part = has_any_part.then(|| ScreenBound::whole(input.tile.size));
-        let Some(part) = any_part.or_else(|| volume.seen_part(&input.view, input.tile)) else { continue };
+        let seen_part = any_part.or_else(|| volume.seen_part(&input.view, input.tile));
+        // Bent rays may come to it wherever it is.
+        let Some(part) = seen_part.into_iter().chain(bent).reduce(ScreenBound::with) else { continue };
         let bounds = part.rectangle();
         let (lens, test) = (volume.lens, volume.test(masks));
         let leaves = volume.region.forms_in_combination();

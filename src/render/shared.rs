@@ -5,6 +5,7 @@ use std::{borrow::Cow, sync::Arc};
 use crate::{
     gpu::{Gpu, GpuError},
     render::{
+        bent,
         cities::Cities,
         eye::PictureTile,
         invokers::Invokers,
@@ -46,6 +47,8 @@ pub(super) struct Shared {
     pub invokers: Synced,
     pub tile_lists: Synced,
     pub object_values: Synced,
+    /// The lenses that bend rays.
+    pub ray_lenses: Synced,
     /// The scene's own city and contents, for the main view.
     pub cities: Synced,
     /// How many samples there are.
@@ -101,6 +104,7 @@ impl Shared {
             invokers: storage("invokers")?,
             tile_lists: storage("invokers of tiles")?,
             object_values: storage("object values")?,
+            ray_lenses: uniform("lenses that bend rays")?,
             cities: uniform("cities")?,
             samples: uniform("resolve")?,
             mesh: Synced::new(gpu, "parts of the picture", U::VERTEX)?,
@@ -159,6 +163,7 @@ impl Shared {
         stale |= self.lens_regions.sync(gpu, &regions)?;
         stale |= self.parameters.sync(gpu, &parameters(plan, is_uber))?;
         stale |= self.object_values.sync(gpu, &input.operations.object_values)?;
+        stale |= self.ray_lenses.sync(gpu, &[bent::uniform(input.rays)])?;
         stale |= self.samples.sync(gpu, &[input.samples as f32])?;
         self.mesh.sync(gpu, &plan.parts.mesh.corners)?;
         self.stamp += u64::from(stale);
@@ -214,6 +219,7 @@ impl Shared {
                     (8, whole(self.narrowed.as_ref().unwrap_or(self.tile_lists.buffer()))),
                     (9, whole(self.invokers.buffer())),
                     (10, whole(self.sprites.buffer())),
+                    (11, whole(self.ray_lenses.buffer())),
                 ],
             ),
             cut_city: made(

@@ -8,7 +8,7 @@ use crate::shader::{
     files,
     geometry::{self, Drawn, NOTHING_CUT},
     hiding::{self, Eye},
-    library::{CHANCE, DITHER, FORWARD, FRAGMENT, FRAGMENT_NODES, GEOMETRY, SHADE, TAIL, TEXEL, TRANSLUCENT},
+    library::{CHANCE, DITHER, FACADE, FORWARD, FRAGMENT, FRAGMENT_NODES, GEOMETRY, SHADE, TAIL, TEXEL, TRANSLUCENT},
     names,
     plan::program::Program,
     rays,
@@ -64,7 +64,7 @@ impl Forward {
         let shade = SHADE.changed(|text| without_entry(text, "vertex", "corner_of"));
         let text = Template::of_files(&files::of_shading(&self.shading, handlers))
             .then(Template::below_path(SHADE.path, &shade))
-            .fill("ray", rays::source())
+            .fill("ray", rays::source(false))
             .fill("snapping", adapter.snapping())
             .fill("carried", own.members)
             .fill("handlers", own.functions + &opacity)
@@ -88,7 +88,7 @@ impl Forward {
         let mut files = files::of_lenses(&self.hidden);
         files.retain(|file| !shading.contains(file));
         files.extend(files::of_objects(&self.hidden).into_iter().filter(|file| !shading.contains(file)));
-        files.extend([FRAGMENT, files::vertices(&self.hidden), GEOMETRY, TRANSLUCENT]);
+        files.extend([FRAGMENT, files::vertices(&self.hidden), FACADE, GEOMETRY, TRANSLUCENT]);
         if !shading.contains(&DITHER) {
             files = files::with_threshold(files);
         }

@@ -24,6 +24,8 @@ pub(super) enum Eye {
     Layers,
     /// The same, in a module that shades fragments where they are drawn.
     Fragments,
+    /// The picture's, in a module that follows rays.
+    Rays,
     /// The sun's: of a place that the picture may not show, the regions' numbers alone say where it is.
     Sun,
 }
@@ -42,7 +44,9 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
     }
     match eye {
-        Eye::Picture | Eye::Layers | Eye::Fragments => text.push_str(&lens_test::bindings(program, false)),
+        Eye::Picture | Eye::Layers | Eye::Fragments | Eye::Rays => {
+            text.push_str(&lens_test::bindings(program, false));
+        }
         Eye::Sun if !program.has().lenses => {}
         Eye::Sun => {
             text.push_str(
@@ -73,7 +77,9 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
 /// Where vertices stand.
 fn cities(program: &Program, eye: Eye) -> String {
     match (eye, program.has().has_cities()) {
-        (Eye::Picture | Eye::Layers | Eye::Fragments, false) => String::new(),
+        (Eye::Picture | Eye::Layers | Eye::Fragments | Eye::Rays, false) => String::new(),
+        // Rays go from city to city.
+        (Eye::Rays, true) => "var<private> city: City;\n".to_owned(),
         (Eye::Picture | Eye::Layers, true) => contents::binding(1, 3, "city"),
         // Group 1 is that of shading.
         (Eye::Fragments, true) => contents::binding(0, 5, "city"),

@@ -63,6 +63,9 @@ volume_forms!(form_files);
 files! {
     VIEW = "lib/view.wgsl";
     VIEW_UNIFORM = "lib/view-uniform.wgsl";
+    BENT_RAYS = "lib/bent-rays.wgsl";
+    RAYS = "pass/rays.wgsl";
+    FACADE = "lib/facade.wgsl";
     SURFACE = "lib/surface.wgsl";
     COLOR = "lib/color.wgsl";
     PACKED = "lib/packed.wgsl";

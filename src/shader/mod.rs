@@ -13,6 +13,7 @@ pub mod effect;
 pub mod effect_file;
 mod epochs;
 mod files;
+mod followed;
 mod forms;
 mod forward;
 mod geometry;

@@ -7,15 +7,15 @@ use crate::{
         backend, carried,
         deforming::DeformPlan,
         effect::{definition::EffectDefinition, registry::handlers},
-        files,
+        files, followed,
         forms::{self, Forms},
         forward::Forward,
         geometry::{self, Drawn, NOTHING_CUT},
         hiding::{self, Eye},
         library::{
-            AMBIENT_OCCLUSION, BARE, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM,
-            DEPTH_CODE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS,
-            HOLE, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, REFINE, REGION, REGIONS, RESOLVE, SHADE,
+            AMBIENT_OCCLUSION, BARE, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM,
+            DEPTH_CODE, FACADE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS,
+            HOLE, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
             SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS,
             STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
@@ -46,6 +46,8 @@ pub enum Module {
     SpriteList,
     /// The sides of a combination, and what its leaves are.
     CombinedSprite(Vec<Form>),
+    /// Bent rays, followed through the city, and what is hidden.
+    Rays(Option<Program>),
     /// Deferred shading, and what the lenses make of it.
     Shade(Program),
     /// Edges as lines, and what lenses make of them.
@@ -103,9 +105,12 @@ impl Module {
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], adapter: &Adapter) -> String {
         let mut files = files::with_threshold(self.files(handlers));
         files.extend_from_slice(self.held(adapter));
+        if self.bends() {
+            files.push(BENT_RAYS);
+        }
         let text = Template::of_files(&files);
         let text = match files.contains(&VIEW) {
-            true => text.fill("ray", rays::source()).fill("snapping", adapter.snapping()),
+            true => text.fill("ray", rays::source(self.bends())).fill("snapping", adapter.snapping()),
             false => text,
         };
         let hidden = |program, eye| hiding::source(program, handlers, lenses, eye);
@@ -160,6 +165,10 @@ impl Module {
                 let own = plan.regions.as_ref().map(|regions| regions::marks(plan, regions, lenses));
                 text.fill("handlers", own.unwrap_or_default())
             }
+            Self::Rays(program) => {
+                let asked = program.as_ref().map(|p| (hidden(p, Eye::Rays), p.has().has_cities()));
+                text.fill("handlers", followed::source(asked))
+            }
             Self::Shadow(Some(program)) => text.fill("handlers", hidden(program, Eye::Sun)),
             Self::Filter(effect) => {
                 let filter = &handlers[*effect as usize];
@@ -169,6 +178,15 @@ impl Module {
             _ => text,
         };
         filled.text()
+    }
+
+    /// Whether its rays are those that lenses bend.
+    fn bends(&self) -> bool {
+        match self {
+            Self::Shade(program) | Self::Composite(program) => program.has().bends,
+            Self::Rays(_) => true,
+            _ => false,
+        }
     }
 
     /// What it has besides where triangles hold their depth.
@@ -183,8 +201,10 @@ impl Module {
     /// The files it is made of, in order.
     fn files(&self, handlers: &[EffectDefinition]) -> Vec<File> {
         let of: &[File] = match self {
-            Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, GEOMETRY],
-            Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, GEOMETRY]),
+            Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, GEOMETRY],
+            Self::Rays(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAYS],
+            Self::Rays(Some(program)) => return files::of_city(program, &[FACADE, RAYS]),
+            Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, FACADE, GEOMETRY]),
             Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SURFACE, HOLE, SHADOW],
             Self::Shadow(Some(program)) => return files::of_city(program, &[HOLE, SHADOW_CUT]),
             Self::Sprite => &[VIEW, VIEW_UNIFORM, REGION, SPRITE],
@@ -218,10 +238,10 @@ impl Module {
             }
             Self::Sections(program) => return files::of_sections(program),
             Self::Layers(program, _) => {
-                return files::of_translucent_city(program, &[GEOMETRY, FRAGMENT_NODES, LAYERS]);
+                return files::of_translucent_city(program, &[FACADE, GEOMETRY, FRAGMENT_NODES, LAYERS]);
             }
             Self::Slots(program, _) => {
-                return files::of_translucent_city(program, &[GEOMETRY, FRAGMENT_NODES, SLOTS, TRANSLUCENT]);
+                return files::of_translucent_city(program, &[FACADE, GEOMETRY, FRAGMENT_NODES, SLOTS, TRANSLUCENT]);
             }
             Self::CountLayers => &[FRAGMENT_NODES, COUNT_LAYERS],
             Self::SortLayers => &[FRAGMENT_NODES, SORT_LAYERS],

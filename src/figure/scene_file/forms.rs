@@ -10,6 +10,7 @@ use crate::{
         best_view::MapMode,
         color::{parse_hex, to_hex},
         ramp::{MAX_CATEGORIES, category},
+        ray::{FisheyeProjection, RayMethod, RayOutline},
         sprite::{Format, Mapping},
     },
     scene::{
@@ -239,6 +240,9 @@ words! {
     Class: [("inside", Self::Inside), ("front", Self::Front), ("behind", Self::Behind), ("rest", Self::Rest)];
     BorderUnit: [("m", Self::Metres), ("px", Self::Pixels), ("ray", Self::Ray)];
     Discrete: [("threshold", Self::Threshold), ("dither", Self::Dither)];
+    RayOutline: [("circle", Self::Circle), ("square", Self::Square)];
+    RayMethod: [("rays", Self::Rays)];
+    FisheyeProjection: [("angular", Self::Angular), ("hemispherical", Self::Hemispherical)];
     Format: Self::WORDS;
     Mapping: Self::WORDS;
     MapMode: Self::WORDS;

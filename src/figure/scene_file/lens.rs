@@ -14,6 +14,7 @@ use crate::{
         node::{Data, Node},
         occlusion,
         paths::Options,
+        ray::{self, RAY},
         reader::Reader,
         region, rendering,
         row::{self, Row, field, keys_of},
@@ -43,11 +44,11 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "kind",
             Kind::Word {
                 now: LensKind::WORDS,
-                later: &["magnifier", "feature", "sampling", "fisheye"],
+                later: &["feature"],
             },
             "\"color\"",
             "",
-            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses, `deformation` moves what is in it, see Deformation lenses, `time` shows another moment in it, see Time. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
+            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses, `deformation` moves what is in it, see Deformation lenses, `time` shows another moment in it, see Time, `magnifier`, `sampling` and `fisheye` bend the rays that come through them, see Lenses that bend rays. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
             "\"color\"",
         ),
         |lens, _| Some(lens.kind.word().into()),
@@ -79,7 +80,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "What its shapes are fixed to: the `scene`, or the `camera`, with which they move and in whose view alone they act; see Placement.",
             "\"camera\"",
         ),
-        |lens, _| (lens.placement == Placement::Camera).then(|| "camera".into()),
+        |lens, _| (lens.placement == Placement::Camera && lens.ray().is_none()).then(|| "camera".into()),
     ),
     Row::<Lens>::joint(
         key(
@@ -313,6 +314,18 @@ const LENS_ROWS: &[Row<Lens>] = &[
     .after("control"),
     Row::<Lens>::joint(
         key(
+            "ray",
+            Kind::Table(&RAY),
+            "by its kind",
+            "",
+            "Of a lens that bends rays: where it is in the picture, and what it does; see Lenses that bend rays.",
+            "{ center = [0.5, 0.5], radius = 0.3, magnification = 3.0 }",
+        ),
+        |lens, options| lens.ray().and_then(|own| ray::written(own, &lens.kind, options)),
+    )
+    .after("strength"),
+    Row::<Lens>::joint(
+        key(
             "content",
             Kind::Table(&CONTENT),
             "what is below",
@@ -497,7 +510,8 @@ fn shapes_of(lens: &Lens) -> Vec<&Region> {
 /// `shapes`, where one is not all; a lens that needs one and has none says so.
 fn several(lens: &Lens, options: &Options) -> Option<Data> {
     let shapes = shapes_of(lens);
-    let needs_none = lens.occluders().is_some() || lens.kind.has_overlay() || lens.deform().is_some();
+    let needs_none =
+        lens.occluders().is_some() || lens.kind.has_overlay() || lens.deform().is_some() || lens.ray().is_some();
     if shapes.len() == 1 || (shapes.is_empty() && needs_none) {
         return None;
     }
@@ -528,10 +542,15 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Lens {
     if let (Some(read), Some(own)) = (deformation::read(reader, fields, &lens.kind.clone()), lens.kind.deform_mut()) {
         *own = read;
     }
+    if let (Some(read), Some(own)) = (ray::read(reader, fields, &lens.kind.clone()), lens.kind.ray_mut()) {
+        *own = read;
+        lens.placement = Placement::Camera;
+    }
     let has_overlay = lens.kind.has_overlay();
     let is_occlusion = lens.rendering().is_some();
     let needs_shape = lens.deform().is_none_or(|deform| !deform.needs_no_area());
-    lens.shapes = shapes(reader, fields, needs_shape && !is_occlusion && !has_overlay);
+    let bends_rays = lens.ray().is_some();
+    lens.shapes = shapes(reader, fields, needs_shape && !is_occlusion && !has_overlay && !bends_rays);
     let (effects, of_effects) = effects::effects(reader, fields, "effects", true);
     lens.effects = effects;
     if let Some(rendering) = lens.kind.rendering_mut() {

@@ -29,6 +29,7 @@ pub mod overlay;
 mod paths;
 mod poi;
 mod problems;
+mod ray;
 mod reader;
 mod region;
 mod rendering;

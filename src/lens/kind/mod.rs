@@ -5,10 +5,13 @@ mod best_view;
 mod color;
 mod content;
 mod deformation;
+mod fisheye;
+mod magnifier;
 mod map_view;
 mod occlusion;
 mod portal;
 mod row;
+mod sampling;
 mod see_through;
 mod time;
 mod worldlet;
@@ -18,15 +21,18 @@ pub use best_view::BestViewLens;
 pub use color::ColorLens;
 pub use content::ContentLens;
 pub use deformation::Deformation;
+pub use fisheye::FisheyeLens;
+pub use magnifier::Magnifier;
 pub use map_view::MapView;
 pub use occlusion::Occlusion;
 pub use portal::Portal;
 pub use row::{KindRow, OwnKind};
+pub use sampling::SamplingLens;
 pub use see_through::SeeThrough;
 pub use time::TimeLens;
 pub use worldlet::Worldlet;
 
-use crate::lens::{best_view::BestView, content::Content, deform::Deform, rendering::Rendering};
+use crate::lens::{best_view::BestView, content::Content, deform::Deform, ray::RayLens, rendering::Rendering};
 
 /// The sum of the kinds, of a table of them.
 macro_rules! kinds {
@@ -90,6 +96,12 @@ kinds! {
     Deformation(Deformation),
     /// Shows another moment in it.
     Time(TimeLens),
+    /// Shows larger what lies behind its plane.
+    Magnifier(Magnifier),
+    /// Has more pixels for its middle.
+    Sampling(SamplingLens),
+    /// Shows more directions than the picture.
+    Fisheye(FisheyeLens),
     /// Shows an image or a text.
     Annotation(Annotation),
     /// Shows the city from an eye of its own.
@@ -159,6 +171,16 @@ impl LensKind {
         self.own_mut().deform_mut()
     }
 
+    /// How it bends rays, if it is a lens that does.
+    pub fn ray(&self) -> Option<&RayLens> {
+        self.own().ray()
+    }
+
+    /// As [`Self::ray`], to be changed.
+    pub fn ray_mut(&mut self) -> Option<&mut RayLens> {
+        self.own_mut().ray_mut()
+    }
+
     /// What its overlay shows, if it has one.
     pub fn best_view(&self) -> Option<&BestView> {
         self.own().best_view()
@@ -186,7 +208,7 @@ mod tests {
     #[test]
     fn a_kind_has_what_is_its_own_and_nothing_else() {
         let given = |kind: &LensKind| {
-            let parts = [kind.rendering().is_some(), kind.deform().is_some(), kind.best_view().is_some()];
+            let parts = [kind.rendering().is_some(), kind.deform().is_some(), kind.best_view().is_some(), kind.ray().is_some()];
             (parts.iter().filter(|is| **is).count(), kind.content().is_some())
         };
         for word in LensKind::WORDS {
@@ -195,7 +217,7 @@ mod tests {
             assert!(parts <= 1, "{word}");
             assert_eq!(has_content, *word == "content", "{word}");
             kind.set_content(Some(Content::default()));
-            assert_eq!(kind.content().is_some(), !kind.has_overlay(), "{word}");
+            assert_eq!(kind.content().is_some(), !kind.has_overlay() && kind.ray().is_none(), "{word}");
             kind.set_content(None);
             assert_eq!((given(&kind), kind.content()), ((parts, false), None), "{word}");
         }

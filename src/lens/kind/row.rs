@@ -5,6 +5,7 @@ use crate::lens::{
     body::LensBody,
     content::Content,
     deform::Deform,
+    ray::RayLens,
     rendering::Rendering,
 };
 
@@ -71,6 +72,16 @@ pub trait Own {
 
     /// As [`Self::deform`], to be changed.
     fn deform_mut(&mut self) -> Option<&mut Deform> {
+        None
+    }
+
+    /// See [`super::LensKind::ray`].
+    fn ray(&self) -> Option<&RayLens> {
+        None
+    }
+
+    /// As [`Self::ray`], to be changed.
+    fn ray_mut(&mut self) -> Option<&mut RayLens> {
         None
     }
 

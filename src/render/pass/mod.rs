@@ -15,6 +15,7 @@
 //! ends of lenses          where rays leave lenses that ask for sections, and enter them,
 //! count sections          how many closed shells are laid open there,
 //! sections                and the surface that closes them
+//! bent rays               what lenses that bend rays show, in place of what was drawn there
 //! clear lens masks        where AOVs or statistics ask for them
 //! layers                  every fragment that is seen through and not behind what is opaque, into the list of its pixel
 //! count layers            where opacity rules ask how many layers the picture has
@@ -69,6 +70,7 @@ pub mod masks;
 pub mod narrow;
 pub mod opaque;
 pub mod picture_pass;
+pub mod rays;
 pub mod reference;
 pub mod resolve;
 pub mod section_kind;
@@ -187,6 +189,7 @@ table! {
     geometry: geometry::Geometry,
     region_geometry: reference::region_geometry::RegionGeometry,
     sections: sections::Sections,
+    rays: rays::Rays,
     masks: masks::ClearMasks,
     layers: layers::ExactLayers,
     slots: transparency::slots::SlotLayers,

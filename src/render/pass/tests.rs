@@ -2,12 +2,16 @@
 
 use std::sync::Arc;
 
-use glam::{DVec3, dvec3};
+use glam::{DVec2, DVec3, dvec3};
 
 use crate::{
     city::CityModel,
     geom::{Aabb, Shape},
-    lens::{Class, EffectUse, Lens, LensKind, LensSprite},
+    lens::{
+        Class, EffectUse, Lens, LensKind, LensSprite,
+        ray::{Bend, Magnify, RayLens},
+        ray_path::{PictureFrame, RayPaths},
+    },
     render::{
         city::{Chunk, ObjectRun, SectionKind, Translucency},
         city_facts::{CityFacts, SectionFacts},
@@ -57,6 +61,7 @@ struct Asked {
     measured: bool,
     screen_occlusion: bool,
     furniture: Furniture,
+    rays: RayPaths,
 }
 
 impl Asked {
@@ -75,6 +80,7 @@ impl Asked {
             measured: false,
             screen_occlusion: false,
             furniture: furniture::NONE.clone(),
+            rays: RayPaths::default(),
         }
     }
 
@@ -123,6 +129,7 @@ impl Asked {
             transparent: false,
             haze: 0.0,
             volumes: &volumes,
+            rays: &self.rays,
             lens_count: 1,
             solids: &solids,
             operations: &operations,
@@ -224,6 +231,23 @@ fn effects_call_for_their_own_passes_alone() {
     assert_eq!(section.passes(), ["geometry", "ends of lenses", "shade"]);
     let uncut = Asked { section: Some([1.0; 3]), ..Asked::effect("greyscale") };
     assert_eq!(uncut.passes(), ["geometry", "shade"], "what is not cut has no section");
+}
+
+#[test]
+fn lenses_that_bend_rays_call_for_a_pass_where_they_are_seen_and_bend_any() {
+    let passes = |lens: &RayLens| {
+        let frame = PictureFrame { half: DVec2::splat(0.5), is_parallel: false, near: 0.5 };
+        let rays = RayPaths::new(&[(0, lens)], &frame, |_| None);
+        Asked { rays, ..Asked::nothing() }.passes()
+    };
+    let lens = RayLens::magnifier();
+    assert_eq!(passes(&lens), ["geometry", "bent rays", "shade"]);
+    assert_eq!(passes(&RayLens::fisheye()), ["geometry", "bent rays", "shade"]);
+    assert_eq!(passes(&RayLens { radius: 0.0, ..lens.clone() }), ["geometry", "shade"]);
+    assert_eq!(passes(&RayLens { center: DVec2::splat(3.0), ..lens.clone() }), ["geometry", "shade"], "beside the picture");
+    let Bend::Magnify(magnify) = lens.bend else { panic!("a magnifier") };
+    let same = RayLens { bend: Bend::Magnify(Magnify { magnification: 1.0, ..magnify }), ..lens };
+    assert_eq!(passes(&same), ["geometry", "shade"], "it shows what is there");
 }
 
 #[test]

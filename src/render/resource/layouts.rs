@@ -56,7 +56,7 @@ pub static SHADE: GroupLayout = GroupLayout {
     ],
 };
 /// Shade, and geometry where something is hidden, group 2: sprites, object values, parameters, volumes, masks, invokers, filtered
-/// images, shapes.
+/// images, shapes, lenses that bend rays.
 pub static LENSES: GroupLayout = GroupLayout {
     label: "lenses",
     entries: &[
@@ -71,6 +71,7 @@ pub static LENSES: GroupLayout = GroupLayout {
         (8, S::FRAGMENT, STORAGE),
         (9, S::FRAGMENT, STORAGE),
         (10, S::FRAGMENT, STORAGE),
+        (11, DRAWN, UNIFORM),
     ],
 };
 /// Geometry and shadow where something is hidden, group 1: surfaces, planes of convex volumes, faces of solids; the city, for the

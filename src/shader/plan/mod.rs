@@ -54,6 +54,8 @@ pub struct Plan {
     pub moves: bool,
     /// Whether some look otherwise at other moments.
     pub varies: bool,
+    /// Whether lenses bend the rays of some pixels.
+    pub bends: bool,
     /// Whether the frame shows what is under the sun of one of several moments alone; then looks vary, too.
     pub lit: bool,
     /// The time operators of its lenses, bottom lens first.
@@ -179,8 +181,8 @@ impl Plan {
             rules.any(|(step, _)| matches!(step.scope, Scope::Lens(l, _) if l == lens))
         };
         (0..).zip(&mut lenses).for_each(|(i, lens)| lens.border = lens.border.filter(|b| b.dithers || fades(i)));
-        let Self { clear_materials, timed, partly, moves, .. } = *self;
-        Some(Self { lenses, steps, contents, epochs, clear_materials, timed, partly, moves, ..Self::default() })
+        let Self { clear_materials, timed, partly, moves, bends, .. } = *self;
+        Some(Self { lenses, steps, contents, epochs, clear_materials, timed, partly, moves, bends, ..Self::default() })
     }
 
     /// The part that lines go through; `None` where no effect draws lines.
@@ -194,6 +196,7 @@ impl Plan {
             timed: self.timed,
             partly: self.partly,
             moves: self.moves,
+            bends: self.bends,
             epochs: self.epochs.clone(),
             ..Self::default()
         })
@@ -227,7 +230,7 @@ impl Plan {
         let steps = self.steps.iter().filter(is_of_layers).cloned().collect();
         let mut lenses = self.lenses.clone();
         lenses.iter_mut().for_each(|lens| lens.body = None);
-        let Self { haze, masks, clear_materials, partly, varies, .. } = *self;
+        let Self { haze, masks, clear_materials, partly, varies, bends, .. } = *self;
         let moves = partly && self.moves;
         // What is there by halves is asked how much of it.
         let timed = partly || varies;
@@ -242,6 +245,7 @@ impl Plan {
             partly,
             moves,
             varies,
+            bends,
             epochs,
             ..Self::default()
         };

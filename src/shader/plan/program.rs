@@ -61,6 +61,10 @@ impl Program {
             Self::Specialised(plan) => plan.varies,
             Self::Uber(uber) => uber.varies,
         };
+        let bends = match self {
+            Self::Specialised(plan) => plan.bends,
+            Self::Uber(uber) => uber.bends,
+        };
         let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
@@ -90,6 +94,7 @@ impl Program {
             partly,
             moves,
             varies,
+            bends,
             borders,
             by_ray,
         }
@@ -201,6 +206,8 @@ pub struct Parts {
     pub moves: bool,
     /// How places look that have another moment.
     pub varies: bool,
+    /// Lenses that bend rays.
+    pub bends: bool,
     /// Soft borders of lenses.
     pub borders: bool,
     /// Borders of lenses along rays.

@@ -46,6 +46,8 @@ pub struct Uber {
     pub moves: bool,
     /// Whether some look otherwise at other moments.
     pub varies: bool,
+    /// Whether lenses bend the rays of some pixels.
+    pub bends: bool,
     /// Whether a frame shows what is under the sun of one of several moments alone.
     pub lit: bool,
     /// The time operators of the scene's lenses, ascending, each once.
@@ -69,6 +71,7 @@ impl Uber {
             borders: self.dithers || (self.borders && self.is_seen_through(handlers)),
             by_ray: self.by_ray,
             clear_materials: self.clear_materials,
+            bends: self.bends,
             ..Self::default()
         })
     }
@@ -82,7 +85,7 @@ impl Uber {
     pub fn lining(&self, handlers: &[EffectDefinition]) -> Option<Self> {
         let effects = self.of(handlers, EffectKind::touches_lines);
         let (tests, leaves) = (self.tests.clone(), self.leaves.clone());
-        let Self { sides, borders, by_ray, dithers, contents, timed, partly, moves, blends, .. } = *self;
+        let Self { sides, borders, by_ray, dithers, contents, timed, partly, moves, blends, bends, .. } = *self;
         let epochs = self.epochs.clone();
         let all = Self {
             effects,
@@ -96,6 +99,7 @@ impl Uber {
             timed,
             partly,
             moves,
+            bends,
             epochs,
             ..Self::default()
         };

@@ -1,0 +1,185 @@
+// Lenses that bend rays (Wang et al., section 3): where the ray of a pixel goes. `lens::ray_path` does the same on the host, and says what a
+// plane does to a ray.
+
+struct RayLens {
+    center: vec2f,              // in the picture's plane at distance 1; of parallel rays, metres
+    radius: f32,                // the same
+    border: f32,                // width of the band in which rays find back, a share of the radius
+    distance: f32,              // D of its plane, metres
+    until: f32,                 // D from which on rays go as the eye sees, metres
+    power: f32,                 // what it takes from slopes, 1 / metres
+    kind: u32,                  // RAY_*
+    outline: u32,               // OUTLINE_*
+    first_knot: u32,            // of a sampled radius
+    knots: u32,
+    angle: f32,                 // of a fisheye, from its middle to its rim, radians
+}
+
+const RAY_PLANE: u32 = 0u;
+const RAY_SAMPLED: u32 = 1u;
+const RAY_ANGULAR: u32 = 2u;
+const RAY_HEMISPHERICAL: u32 = 3u;
+const OUTLINE_SQUARE: u32 = 1u;
+const MOST_RAY_LENSES: u32 = 8u;
+
+struct RayEvent {
+    distance: f32,              // D, metres
+    lens: u32,
+    ends: u32,                  // whether the ray goes on as the eye sees; else it meets the plane
+    reserved: u32,
+}
+
+// Those of the picture stand first, the topmost before the others, then those with planes.
+struct RayLenses {
+    images: u32,
+    planes: u32,
+    events: u32,
+    reserved: u32,
+    lenses: array<RayLens, 8>,
+    along: array<RayEvent, 16>, // nearest first
+    knots: array<vec4f, 1024>,  // radius of the lens, of the picture, its derivative
+}
+
+@group(2) @binding(11) var<uniform> ray_lenses: RayLenses;
+
+// D up to which the rays that are asked for have gone, metres.
+var<private> seen_until: f32 = FAR_AWAY;
+
+fn look_at_distance(distance: f32) {
+    seen_until = distance;
+}
+
+// A ray on its way.
+struct Path {
+    ray: Ray,
+    bent: array<vec2f, 8>,      // what each plane added to its slope
+    is_round: bool,             // of a fisheye: no plane stands in its way
+}
+
+// How far a place of the picture is from the middle of a lens, in radii.
+fn rim_share(lens: u32, across: vec2f) -> f32 {
+    let place = (across - ray_lenses.lenses[lens].center) / ray_lenses.lenses[lens].radius;
+    return select(length(place), max(abs(place.x), abs(place.y)), ray_lenses.lenses[lens].outline == OUTLINE_SQUARE);
+}
+
+fn across_of_pixel(pixel: vec2f) -> vec2f {
+    return pixel * view.across_from_pixel.xy + view.across_from_pixel.zw;
+}
+
+// Whether lenses may bend the ray of a pixel.
+fn is_bent(pixel: vec2f) -> bool {
+    let across = across_of_pixel(pixel);
+    var is_in = false;
+    for (var lens = 0u; lens < ray_lenses.images + ray_lenses.planes; lens++) {
+        is_in |= rim_share(lens, across) < 1.0;
+    }
+    return is_in;
+}
+
+// The same of the pixels within a reach of it.
+fn may_bend(pixel: vec2f, reach: f32) -> bool {
+    let across = across_of_pixel(pixel);
+    let width = reach * max(abs(view.across_from_pixel.x), abs(view.across_from_pixel.y));
+    var may = false;
+    for (var lens = 0u; lens < ray_lenses.images + ray_lenses.planes; lens++) {
+        may |= rim_share(lens, across) < 1.0 + 1.4143 * width / ray_lenses.lenses[lens].radius;
+    }
+    return may;
+}
+
+// The radius of the picture at one of a lens', by the radius; 1 at the rim.
+fn sampled_scale(lens: u32, share: f32) -> f32 {
+    let first = ray_lenses.lenses[lens].first_knot;
+    var low = 0u;
+    var high = ray_lenses.lenses[lens].knots - 1u;
+    while high - low > 1u {
+        let middle = (low + high) / 2u;
+        if ray_lenses.knots[first + middle].x <= share {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let a = ray_lenses.knots[first + low];
+    let b = ray_lenses.knots[first + high];
+    let step = b.x - a.x;
+    let t = clamp((share - a.x) / step, 0.0, 1.0);
+    let from_a = a.y * (1.0 + 2.0 * t) + a.z * step * t;
+    let from_b = b.y * (3.0 - 2.0 * t) - b.z * step * (1.0 - t);
+    let radius = (1.0 - t) * (1.0 - t) * from_a + t * t * from_b;
+    return select(a.z, radius / share, share > 1e-6);
+}
+
+// The ray of a place of a fisheye.
+fn round_ray(lens: u32, across: vec2f) -> Ray {
+    let own = ray_lenses.lenses[lens];
+    let middle = select(own.center, vec2f(0.0), view.orthographic == 1u);
+    let forward = normalize(vec3f(middle, -1.0));
+    let right = normalize(vec3f(-forward.z, 0.0, forward.x));
+    let up = cross(right, forward);
+    let place = (across - own.center) / own.radius;
+    let share = length(place);
+    let is_angular = own.kind == RAY_ANGULAR;
+    let sine = clamp(share * sin(own.angle), -1.0, 1.0);
+    let turn = select(asin(sine), own.angle * share, is_angular);
+    // sin(turn) / share, at 0 its limit.
+    let slope = select(select(sin(own.angle), own.angle, is_angular), sin(turn) / share, share > 1e-4);
+    return Ray(vec3f(0.0), normalize(cos(turn) * forward + slope * (place.x * right + place.y * up)));
+}
+
+// The path of a pixel's ray, at its beginning.
+fn path_of_pixel(pixel: vec2f) -> Path {
+    var across = across_of_pixel(pixel);
+    var path: Path;
+    for (var lens = 0u; lens < ray_lenses.images; lens++) {
+        let share = rim_share(lens, across);
+        if share < 1.0 && !path.is_round {
+            if ray_lenses.lenses[lens].kind == RAY_SAMPLED {
+                let center = ray_lenses.lenses[lens].center;
+                across = center + sampled_scale(lens, share) * (across - center);
+            } else {
+                path.ray = round_ray(lens, across);
+                path.is_round = true;
+            }
+        }
+    }
+    if !path.is_round {
+        let is_flat = view.orthographic == 1u;
+        path.ray = Ray(vec3f(select(vec2f(0.0), across, is_flat), 0.0), vec3f(select(across, vec2f(0.0), is_flat), -1.0));
+    }
+    return path;
+}
+
+// What becomes of a ray there.
+fn pass_event(path: ptr<function, Path>, number: u32) {
+    let event = ray_lenses.along[number];
+    let lens = ray_lenses.lenses[event.lens];
+    let plane = event.lens - ray_lenses.images;
+    let is_flat = view.orthographic == 1u;
+    let at = (*path).ray.origin.xy + event.distance * (*path).ray.direction.xy;
+    let scale = select(event.distance, 1.0, is_flat);
+    let share = rim_share(event.lens, at / scale);
+    let k = select(0.0, max((share - (1.0 - lens.border)) / lens.border, 0.0), lens.border > 0.0);
+    let met = select(vec2f(0.0), -(1.0 - k) * lens.power * (at - scale * lens.center), share < 1.0);
+    let ends = event.ends == 1u;
+    let by = select(met, (*path).bent[plane], ends);
+    (*path).bent[plane] = by;
+    // Of a ray that goes on as the eye sees that place.
+    let goes_on = select(-lens.distance / event.distance, -1.0, is_flat);
+    let begins = select(lens.distance, event.distance, is_flat);
+    let slope = (*path).ray.direction.xy + select(1.0, goes_on, ends) * by;
+    let origin = (*path).ray.origin.xy + select(-event.distance, begins, ends) * by;
+    (*path).ray = Ray(vec3f(origin, 0.0), vec3f(slope, -1.0));
+}
+
+// The ray through what a pixel shows at the distance that is looked at.
+fn ray_of_pixel(pixel: vec2f) -> Ray {
+    var path = path_of_pixel(pixel);
+    let count = select(ray_lenses.events, 0u, path.is_round);
+    for (var i = 0u; i < count; i++) {
+        if ray_lenses.along[i].distance < seen_until {
+            pass_event(&path, i);
+        }
+    }
+    return path.ray;
+}

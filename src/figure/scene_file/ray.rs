@@ -1,0 +1,284 @@
+//! `ray` of a lens in scene files: its keys, read and written.
+
+use glam::DVec2;
+
+use crate::{
+    figure::scene_file::{
+        check::Fields,
+        forms::{Degrees, Form, Same, Word},
+        keys::{FAR_M, Kind, Table, key},
+        node::Data,
+        paths::Options,
+        reader::Reader,
+        row::{self, Row, field, keys_of},
+    },
+    lens::{
+        LensKind,
+        ray::{Bend, Fisheye, MOST_POINTS, Magnify, RayLens, Sampling, SamplingRate},
+    },
+};
+
+/// `ray` of a lens.
+pub const RAY: Table = Table {
+    name: "ray",
+    doc: "Of a lens that bends rays: where it is in the picture, and what it does; see Lenses that bend rays.",
+    keys: keys_of!(RAY_ROWS),
+};
+
+/// The row of what only some kinds have.
+macro_rules! bend {
+    ($key:expr, $form:ty, $pattern:pat => $place:expr) => {
+        Row::<RayLens>::new(
+            $key,
+            |lens, _| match &lens.bend {
+                $pattern => <$form as Form<_>>::data(&$place),
+                _ => None,
+            },
+            |lens, given| {
+                if let $pattern = &mut lens.bend {
+                    <$form as Form<_>>::take(given.node, &mut $place);
+                }
+            },
+        )
+    };
+}
+
+const RAY_ROWS: &[Row<RayLens>] = &[
+    field!(
+        key("center", Kind::PicturePlace, "[0.5, 0.5]", "", "Its middle: shares of the picture's width and height, from the left and from above.", "[0.4, 0.6]"),
+        Same,
+        |lens: RayLens| lens.center
+    ),
+    field!(
+        key(
+            "radius",
+            Kind::Number { min: 0.001, max: 4.0 },
+            "0.25; of a fisheye 0.5",
+            "picture heights",
+            "From its middle to its rim.",
+            "0.3",
+        ),
+        Same,
+        |lens: RayLens| lens.radius
+    ),
+    field!(
+        key(
+            "outline",
+            Kind::Word { now: &["circle", "square"], later: &[] },
+            "\"circle\"",
+            "",
+            "Its outline in the picture; the edges of a square are along those of the picture.",
+            "\"square\"",
+        ),
+        Word,
+        |lens: RayLens| lens.outline
+    ),
+    Row::<RayLens>::new(
+        key(
+            "magnification",
+            Kind::Number { min: 0.1, max: 1000.0 },
+            "2.5",
+            "",
+            "Of a magnifier: how many times as large its core shows what lies at `at` and beyond; below 1 it makes smaller. Of a sampling-rate lens: how densely it samples its middle, where its rim has 1.",
+            "4.0",
+        ),
+        |lens, _| match &lens.bend {
+            Bend::Magnify(Magnify { magnification, .. }) => Some((*magnification).into()),
+            Bend::Sample(Sampling { rate: SamplingRate::Cubic(middle) }) => Some((*middle).into()),
+            Bend::Sample(_) | Bend::Fisheye(_) => None,
+        },
+        |lens, given| match &mut lens.bend {
+            Bend::Magnify(Magnify { magnification: number, .. })
+            | Bend::Sample(Sampling { rate: SamplingRate::Cubic(number) }) => Same::take(given.node, number),
+            Bend::Sample(_) | Bend::Fisheye(_) => {}
+        },
+    ),
+    bend!(
+        key(
+            "distance",
+            Kind::Number { min: 0.001, max: FAR_M },
+            "half of the way to what its middle shows",
+            "metres",
+            "Of a magnifier: from the eye to its plane, along the view axis. What is nearer stays as it is.",
+            "40.0",
+        ),
+        Same,
+        Bend::Magnify(magnify) => magnify.distance
+    ),
+    bend!(
+        key(
+            "at",
+            Kind::Number { min: 0.001, max: FAR_M },
+            "from its plane to what its middle shows",
+            "metres",
+            "Of a magnifier: from its plane, along the view axis, to where things are as much larger as `magnification` says; what is beyond is as much larger.",
+            "60.0",
+        ),
+        Same,
+        Bend::Magnify(magnify) => magnify.at
+    ),
+    bend!(
+        key(
+            "border",
+            Kind::Number { min: 0.0, max: 1.0 },
+            "0.4",
+            "",
+            "Of a magnifier: how wide the band inside of its rim is, a share of the radius, in which what lies around its core is compressed, so that nothing is lost. 0: there is none, and the core hides it.",
+            "0.25",
+        ),
+        Same,
+        Bend::Magnify(magnify) => magnify.border
+    ),
+    bend!(
+        key(
+            "rate",
+            Kind::PlanPoints(2),
+            "from `magnification` smoothly to 1",
+            "",
+            "Of a sampling-rate lens: points `[share of the radius, rate]` of how densely it samples, straight in between: the first at 0, the last at 1.",
+            "[[0.0, 4.0], [0.5, 3.0], [1.0, 1.0]]",
+        ),
+        Rate,
+        Bend::Sample(sampling) => sampling.rate
+    ),
+    bend!(
+        key(
+            "angle_deg",
+            Kind::Number { min: 1.0, max: 360.0 },
+            "180",
+            "degrees",
+            "Of a fisheye: the angle from rim to rim; of a hemispherical one 180 at most.",
+            "220.0",
+        ),
+        Degrees,
+        Bend::Fisheye(fisheye) => fisheye.angle
+    ),
+    bend!(
+        key(
+            "projection",
+            Kind::Word { now: &["angular", "hemispherical"], later: &[] },
+            "\"angular\"",
+            "",
+            "Of a fisheye: how angles from its axis lie in it: by themselves, or by their sines, as a half ball looks.",
+            "\"hemispherical\"",
+        ),
+        Word,
+        Bend::Fisheye(fisheye) => fisheye.projection
+    ),
+    field!(
+        key(
+            "method",
+            Kind::Word { now: &["rays"], later: &["image", "vertices"] },
+            "\"rays\"",
+            "",
+            "How what it shows is found: by exact `rays` through the triangles.",
+            "\"rays\"",
+        ),
+        Word,
+        |lens: RayLens| lens.method
+    ),
+    field!(
+        key("grid", Kind::Boolean, "false", "", "Whether a grid that is square without it is drawn over what it shows.", "true"),
+        Same,
+        |lens: RayLens| lens.grid
+    ),
+];
+
+/// A drawn rate.
+struct Rate;
+
+impl Form<SamplingRate> for Rate {
+    fn data(rate: &SamplingRate) -> Option<Data> {
+        match rate {
+            SamplingRate::Cubic(_) => None,
+            SamplingRate::Points(points) => Some(Data::list(points.iter().copied())),
+        }
+    }
+
+    fn take(node: &crate::figure::scene_file::node::Node, into: &mut SamplingRate) {
+        let points: Option<Vec<DVec2>> =
+            node.list().map(|all| all.iter().filter_map(|p| p.numbers::<2>().map(DVec2::from)).collect());
+        if let Some(points) = points.filter(|points| rate_problem(points).is_none()) {
+            *into = SamplingRate::Points(points);
+        }
+    }
+}
+
+/// The least rate of a drawn one.
+const LEAST_RATE: f64 = 0.01;
+
+/// What is wrong with a drawn rate.
+fn rate_problem(points: &[DVec2]) -> Option<String> {
+    let ascends = points.windows(2).all(|pair| pair[0].x < pair[1].x);
+    let [first, last] = [points.first()?.x, points.last()?.x];
+    if points.len() > MOST_POINTS {
+        return Some(format!("has {} points; {MOST_POINTS} at most would be right", points.len()));
+    }
+    if !(ascends && first == 0.0 && last == 1.0) {
+        return Some("must go from 0 to 1, ascending, in the first number of its points".to_owned());
+    }
+    let low = points.iter().find(|p| !(LEAST_RATE..=1000.0).contains(&p.y))?;
+    Some(format!("has a rate of {}; {LEAST_RATE} to 1000 would be right", low.y))
+}
+
+/// The keys that only some kinds have, and the words of these.
+const OF_KINDS: [(&str, &[&str]); 7] = [
+    ("magnification", &["magnifier", "sampling"]),
+    ("distance", &["magnifier"]),
+    ("at", &["magnifier"]),
+    ("border", &["magnifier"]),
+    ("rate", &["sampling"]),
+    ("angle_deg", &["fisheye"]),
+    ("projection", &["fisheye"]),
+];
+
+/// The keys of a lens that one that bends rays does not have: where it is, `ray` says.
+const NOT_GIVEN: [&str; 6] = ["shape", "shapes", "placement", "attached_to", "above_ground", "space"];
+
+/// What a lens that bends rays does; what is wrong is noted.
+pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<RayLens> {
+    let Some(ray) = kind.ray() else {
+        if fields.given("ray") {
+            let message = "has a meaning only for a lens of kind = \"magnifier\", \"sampling\" or \"fisheye\"";
+            reader.checker.note(&fields.place, "ray", fields.line("ray"), message);
+        }
+        return None;
+    };
+    for key in NOT_GIVEN.into_iter().filter(|key| fields.given(key)) {
+        let message = format!("has no meaning for a lens of kind = \"{}\": ray says where it is", kind.word());
+        reader.checker.note(&fields.place, key, fields.line(key), message);
+    }
+    let mut ray = ray.clone();
+    let Some(node) = fields.node("ray") else { return Some(ray) };
+    let own = reader.checker.fields(node, &RAY, &[], fields.place.within("ray", node.line));
+    row::read(RAY_ROWS, &own, reader, &mut ray);
+    for (key, kinds) in OF_KINDS.into_iter().filter(|(key, kinds)| own.given(key) && !kinds.contains(&kind.word())) {
+        let all = kinds.iter().map(|kind| format!("\"{kind}\"")).collect::<Vec<_>>().join(" or ");
+        let message = format!("has a meaning only for a lens of kind = {all}");
+        reader.checker.note(&own.place, key, own.line(key), message);
+    }
+    if let Some(points) = own.node("rate").and_then(|node| node.list()) {
+        let points: Vec<DVec2> = points.iter().filter_map(|p| p.numbers::<2>().map(DVec2::from)).collect();
+        if let Some(message) = rate_problem(&points) {
+            reader.checker.note(&own.place, "rate", own.line("rate"), message);
+        }
+        if own.given("magnification") {
+            let message = "is given together with magnification: a rate is one of them";
+            reader.checker.note(&own.place, "rate", own.line("rate"), message);
+        }
+    }
+    if let Bend::Fisheye(Fisheye { angle, projection }) = &ray.bend
+        && *projection == crate::lens::ray::FisheyeProjection::Hemispherical
+        && *angle > std::f64::consts::PI + 1e-9
+    {
+        let message = "must be 180 at most where projection is \"hemispherical\": a half ball shows no more";
+        reader.checker.note(&own.place, "angle_deg", own.line("angle_deg"), message);
+    }
+    Some(ray)
+}
+
+/// The table of a lens' rays.
+pub fn written(ray: &RayLens, kind: &LensKind, options: &Options) -> Option<Data> {
+    let default = LensKind::of_word(kind.word())?;
+    Some(row::written(RAY_ROWS, ray, default.ray()?, options))
+}

@@ -1,0 +1,507 @@
+//! Paths of bent rays: lenses that bend rays as a view meets them, and where the ray of a place of the picture goes (Wang et al. §3).
+//!
+//! Places of the picture are those of its plane at distance 1 from the eye, x right and y up; where rays are parallel, metres across. A path is
+//! told by the distance D along the view axis:
+//!
+//! ```text
+//!   eye ──────────── plane of the lens ──────────────── reached ───────────────
+//!        own ray      │  bent, straight to where what   │  on in the direction in which
+//!                     │  lies there is so much larger   │  the eye sees that place
+//! ```
+//!
+//! A plane adds to the slope of the ray that meets it, as a thin lens does: `−(1−k)·φ·u`, where u is the place on the plane counted from the
+//! lens' middle, and φ its power. For the ray of a pixel that is the formula of Wang et al.: with `e` = 1/distance in perspective, 0 with parallel
+//! rays, `u(1 + z(e − (1−k)φ))` is where it is at z behind the plane, φ = e + 1/f. It holds for every magnification above 0, has no pole
+//! where f has one, and of several lenses that a ray meets powers add: one that makes things smaller by as much undoes another one.
+//! The focal point lies on the line of sight through the lens' middle, not straight before it: what is in the middle stays there.
+
+use glam::{DVec2, DVec3};
+
+use crate::lens::ray::{Bend, FisheyeProjection, RayLens, RayOutline, SampledRadius};
+
+/// Lenses that bend rays, of one picture at most.
+pub const MOST_RAY_LENSES: usize = 8;
+
+/// The rim of a lens in the picture's plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rim {
+    /// Its middle.
+    pub center: DVec2,
+    /// From there to the rim.
+    pub radius: f64,
+    /// Its outline.
+    pub outline: RayOutline,
+}
+
+impl Rim {
+    /// How far from the middle a place is, in radii.
+    pub fn share(&self, across: DVec2) -> f64 {
+        let from = (across - self.center) / self.radius;
+        match self.outline {
+            RayOutline::Circle => from.length(),
+            RayOutline::Square => from.abs().max_element(),
+        }
+    }
+}
+
+/// A lens with a plane across the view axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneLens {
+    /// Its number among the scene's.
+    pub lens: u32,
+    /// Where it is in the picture.
+    pub rim: Rim,
+    /// How wide the band is in which rays find back, a share of the radius.
+    pub border: f64,
+    /// D of its plane, metres.
+    pub distance: f64,
+    /// D from which on what is seen is as much larger as it will be, metres.
+    pub until: f64,
+    /// What it takes from slopes, per metre.
+    pub power: f64,
+}
+
+/// A lens that shows at each place of the picture what another place, or another direction, has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageLens {
+    /// Its number among the scene's.
+    pub lens: u32,
+    /// Where it is in the picture.
+    pub rim: Rim,
+    /// What it shows.
+    pub bend: ImageBend,
+}
+
+/// What a lens of the picture shows.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ImageBend {
+    /// Places nearer to its middle, or farther.
+    Sampled(SampledRadius),
+    /// Directions around that of its middle: the angle from rim to rim, and how angles lie in it.
+    Round(f64, FisheyeProjection),
+}
+
+/// The lenses of a view that bend rays.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RayPaths {
+    /// Whether its rays are parallel.
+    pub is_parallel: bool,
+    /// Those of the picture, topmost first.
+    pub images: Vec<ImageLens>,
+    /// Those with planes, bottom first.
+    pub planes: Vec<PlaneLens>,
+}
+
+/// A line in view space: x right, y up, −z forward; metres from the eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ViewLine {
+    /// Where it begins.
+    pub origin: DVec3,
+    /// Where it goes, per unit of its parameter: by one metre along the view axis; of a fisheye by one metre.
+    pub direction: DVec3,
+}
+
+impl ViewLine {
+    /// The place at a parameter.
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + t * self.direction
+    }
+}
+
+/// A straight piece of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathPiece {
+    /// From where to where it goes, of the line's parameter.
+    pub range: [f64; 2],
+    /// The line that it lies on.
+    pub line: ViewLine,
+}
+
+/// What happens to a ray at a distance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PathEvent {
+    /// D, metres.
+    pub distance: f64,
+    /// Which of the planes it is.
+    pub plane: usize,
+    /// Whether the ray ceases to be bent by it there; otherwise it meets it.
+    pub ends: bool,
+}
+
+/// The view's share of where its lenses are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PictureFrame {
+    /// Half its width and height, in the picture's plane.
+    pub half: DVec2,
+    /// Whether its rays are parallel.
+    pub is_parallel: bool,
+    /// D of the nearest that is seen, metres.
+    pub near: f64,
+}
+
+impl PictureFrame {
+    /// Where the rim of a lens is.
+    pub fn rim(&self, lens: &RayLens) -> Rim {
+        let place = DVec2::new(2.0 * lens.center.x - 1.0, 1.0 - 2.0 * lens.center.y);
+        Rim { center: place * self.half, radius: lens.radius * 2.0 * self.half.y, outline: lens.outline }
+    }
+}
+
+impl RayPaths {
+    /// The lenses of a picture. `lenses`: their numbers, bottom first; `shown`: D of what is seen at a place of the picture without them, metres.
+    pub fn new(
+        lenses: &[(u32, &RayLens)],
+        frame: &PictureFrame,
+        shown: impl Fn(DVec2) -> Option<f64>,
+    ) -> Self {
+        let mut paths = Self { is_parallel: frame.is_parallel, ..Self::default() };
+        for &(number, lens) in lenses {
+            let rim = frame.rim(lens);
+            if !(rim.radius > 0.0) {
+                continue;
+            }
+            let image = |bend| ImageLens { lens: number, rim, bend };
+            match &lens.bend {
+                Bend::Magnify(magnify) => {
+                    let middle = || shown(rim.center).unwrap_or(DISTANCE_M).max(frame.near);
+                    let (distance, depth) = match (magnify.distance, magnify.at) {
+                        (Some(distance), Some(at)) => (distance, at),
+                        (Some(distance), None) => (distance, (middle() - distance).max(0.5 * distance)),
+                        (None, Some(at)) => ((middle() - at).max(0.5 * at), at),
+                        (None, None) => (0.5 * middle(), 0.5 * middle()),
+                    };
+                    let e = if frame.is_parallel { 0.0 } else { distance.recip() };
+                    let power = (1.0 - magnify.magnification.recip()) * (1.0 + depth * e) / depth;
+                    if power != 0.0 {
+                        let (border, until) = (magnify.border, distance + depth);
+                        paths.planes.push(PlaneLens { lens: number, rim, border, distance, until, power });
+                    }
+                }
+                Bend::Sample(sampling) => {
+                    paths.images.push(image(ImageBend::Sampled(SampledRadius::new(&sampling.rate))));
+                }
+                Bend::Fisheye(fisheye) => {
+                    paths.images.push(image(ImageBend::Round(fisheye.angle, fisheye.projection)));
+                }
+            }
+        }
+        paths.images.reverse();
+        paths
+    }
+
+    /// Whether it bends no ray.
+    pub fn is_empty(&self) -> bool {
+        self.images.is_empty() && self.planes.is_empty()
+    }
+
+    /// The numbers of the lenses, ascending.
+    pub fn lenses(&self) -> Vec<u32> {
+        let images = self.images.iter().map(|lens| lens.lens);
+        let mut all: Vec<u32> = images.chain(self.planes.iter().map(|lens| lens.lens)).collect();
+        all.sort_unstable();
+        all
+    }
+
+    /// The rims of all lenses.
+    pub fn rims(&self) -> impl Iterator<Item = &Rim> {
+        self.images.iter().map(|lens| &lens.rim).chain(self.planes.iter().map(|lens| &lens.rim))
+    }
+
+    /// Whether the ray of a place of the picture may be bent.
+    pub fn bends(&self, across: DVec2) -> bool {
+        self.rims().any(|rim| rim.share(across) < 1.0)
+    }
+
+    /// What happens along the view axis, nearest first.
+    pub fn events(&self) -> Vec<PathEvent> {
+        let of = |(plane, lens): (usize, &PlaneLens)| {
+            [(lens.distance, false), (lens.until, true)].map(|(distance, ends)| PathEvent { distance, plane, ends })
+        };
+        let mut events: Vec<PathEvent> = self.planes.iter().enumerate().flat_map(of).collect();
+        events.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.ends.cmp(&b.ends)));
+        events
+    }
+
+    /// The path of the ray of a place of the picture, piece by piece; at least one.
+    pub fn pieces(&self, across: DVec2) -> Vec<PathPiece> {
+        let mut place = across;
+        for lens in &self.images {
+            let share = lens.rim.share(place);
+            if share >= 1.0 {
+                continue;
+            }
+            match &lens.bend {
+                ImageBend::Sampled(radius) => {
+                    // Along the way from the middle, whatever the outline.
+                    let scale = if share > 0.0 { radius.at(share) / share } else { 0.0 };
+                    place = lens.rim.center + scale * (place - lens.rim.center);
+                }
+                ImageBend::Round(angle, projection) => {
+                    let line = self.round(&lens.rim, place, *angle, *projection);
+                    return vec![PathPiece { range: [0.0, f64::INFINITY], line }];
+                }
+            }
+        }
+        let (mut origin, mut slope) = if self.is_parallel { (place, DVec2::ZERO) } else { (DVec2::ZERO, place) };
+        let mut bent = vec![DVec2::ZERO; self.planes.len()];
+        let (mut pieces, mut from) = (Vec::new(), 0.0);
+        for PathEvent { distance, plane, ends } in self.events() {
+            let lens = &self.planes[plane];
+            let line = ViewLine { origin: origin.extend(0.0), direction: slope.extend(-1.0) };
+            pieces.push(PathPiece { range: [from, distance], line });
+            from = distance;
+            // Changes of the slope, and of where the line begins, so that it goes through the same place.
+            let by = if ends { bent[plane] } else { self.bent(lens, origin + distance * slope) };
+            let (by_slope, by_origin) = match (ends, self.is_parallel) {
+                (false, _) => (by, -distance * by),
+                (true, true) => (-by, distance * by),
+                // The direction in which the eye sees that place.
+                (true, false) => (-lens.distance / distance * by, lens.distance * by),
+            };
+            slope += by_slope;
+            origin += by_origin;
+            bent[plane] = by;
+        }
+        let line = ViewLine { origin: origin.extend(0.0), direction: slope.extend(-1.0) };
+        pieces.push(PathPiece { range: [from, f64::INFINITY], line });
+        pieces
+    }
+
+    /// What a plane adds to the slope of a ray that meets it there, metres from the view axis.
+    fn bent(&self, lens: &PlaneLens, at: DVec2) -> DVec2 {
+        let scale = if self.is_parallel { 1.0 } else { lens.distance };
+        let share = lens.rim.share(at / scale);
+        if share >= 1.0 {
+            return DVec2::ZERO;
+        }
+        let k = if lens.border > 0.0 { ((share - (1.0 - lens.border)) / lens.border).max(0.0) } else { 0.0 };
+        -(1.0 - k) * lens.power * (at - scale * lens.rim.center)
+    }
+
+    /// The line of a place of a fisheye, from the eye.
+    fn round(&self, rim: &Rim, place: DVec2, angle: f64, projection: FisheyeProjection) -> ViewLine {
+        // Parallel rays have no direction to the middle but one.
+        let middle = if self.is_parallel { DVec2::ZERO } else { rim.center };
+        let forward = middle.extend(-1.0).normalize();
+        let right = forward.cross(DVec3::Y).normalize();
+        let up = right.cross(forward);
+        let from = (place - rim.center) / rim.radius;
+        let share = from.length();
+        let turn = match projection {
+            FisheyeProjection::Angular => 0.5 * angle * share,
+            FisheyeProjection::Hemispherical => (share * (0.5 * angle).sin()).clamp(-1.0, 1.0).asin(),
+        };
+        // sin(turn) / share, at 0 its limit.
+        let slope = if share > 1e-9 {
+            turn.sin() / share
+        } else {
+            match projection {
+                FisheyeProjection::Angular => 0.5 * angle,
+                FisheyeProjection::Hemispherical => (0.5 * angle).sin(),
+            }
+        };
+        let direction = turn.cos() * forward + slope * (from.x * right + from.y * up);
+        ViewLine { origin: DVec3::ZERO, direction: direction.normalize() }
+    }
+
+    /// The line that a path lies on at a parameter.
+    pub fn line(&self, across: DVec2, t: f64) -> ViewLine {
+        let pieces = self.pieces(across);
+        let piece = pieces.iter().find(|piece| t <= piece.range[1]).unwrap_or(&pieces[0]);
+        piece.line
+    }
+}
+
+/// D of what is seen where nothing is, metres.
+const DISTANCE_M: f64 = 100.0;
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::lens::ray::{Fisheye, Magnify, Sampling, SamplingRate};
+
+    fn frame(is_parallel: bool) -> PictureFrame {
+        PictureFrame { half: if is_parallel { DVec2::new(80.0, 50.0) } else { DVec2::new(0.8, 0.5) }, is_parallel, near: 0.5 }
+    }
+
+    fn magnifier(magnification: f64, at: f64, distance: f64, border: f64) -> RayLens {
+        let magnify = Magnify { magnification, at: Some(at), distance: Some(distance), border };
+        RayLens { bend: Bend::Magnify(magnify), ..RayLens::magnifier() }
+    }
+
+    fn paths(lenses: &[RayLens], is_parallel: bool) -> RayPaths {
+        let numbered: Vec<(u32, &RayLens)> = (0..).zip(lenses).collect();
+        RayPaths::new(&numbered, &frame(is_parallel), |_| None)
+    }
+
+    /// Where the path of a place is at a distance, as the picture without lenses has it.
+    fn seen(paths: &RayPaths, across: DVec2, d: f64) -> DVec2 {
+        let place = paths.line(across, d).at(d).truncate();
+        if paths.is_parallel { place } else { place / d }
+    }
+
+    proptest! {
+        #![proptest_config(crate::seeds::config())]
+
+        /// At every depth the core magnifies by the formula: 1/(1−z/f) with parallel rays, (1+z/z_L)/(1−z/f) in perspective; what is beyond the place
+        /// where it is reached is magnified as much.
+        #[test]
+        fn a_core_magnifies_by_the_formula(
+            is_parallel in any::<bool>(),
+            magnification in 0.3..12.0_f64,
+            at in 1.0..400.0_f64,
+            distance in 1.0..400.0_f64,
+            z in 0.0..2.0_f64,
+            angle in 0.0..6.3_f64,
+        ) {
+            let lens = magnifier(magnification, at, distance, 0.4);
+            let paths = paths(std::slice::from_ref(&lens), is_parallel);
+            let rim = frame(is_parallel).rim(&lens);
+            let at_rim = 0.5 * rim.radius;
+            let across = rim.center + at_rim * DVec2::from_angle(angle);
+            let e = if is_parallel { 0.0 } else { 1.0 / distance };
+            let inverse_f = (1.0 - (1.0 + at * e) / magnification) / at;
+            let depth = (z * at).min(at);
+            let expected = (1.0 + depth * e) / (1.0 - depth * inverse_f);
+            let from = seen(&paths, across, distance + z * at) - rim.center;
+            prop_assert!((at_rim / from.length() / expected - 1.0).abs() < 1e-9, "{} is not {expected}", at_rim / from.length());
+            // Before the plane nothing changes.
+            prop_assert!((seen(&paths, across, 0.9 * distance) - across).length() < 1e-12);
+        }
+
+        /// Nothing is lost and nothing inverts: at every depth, what is farther from the middle is seen farther from it, and at the rim all is as
+        /// without the lens.
+        #[test]
+        fn magnifiers_compress_and_lose_nothing(
+            is_parallel in any::<bool>(),
+            magnification in 1.0..20.0_f64,
+            at in 1.0..400.0_f64,
+            distance in 1.0..400.0_f64,
+            border in 0.02..1.0_f64,
+            z in 0.0..4.0_f64,
+        ) {
+            let lens = magnifier(magnification, at, distance, border);
+            let paths = paths(std::slice::from_ref(&lens), is_parallel);
+            let rim = frame(is_parallel).rim(&lens);
+            let place = |share: f64| rim.center + DVec2::new(share * rim.radius, 0.0);
+            let shown = |share: f64| (seen(&paths, place(share), distance + z * at) - rim.center).x;
+            let mut before = shown(0.0);
+            prop_assert!(before.abs() < 1e-12);
+            for i in 1..=400 {
+                let now = shown(f64::from(i) / 400.0);
+                prop_assert!(now > before);
+                before = now;
+            }
+            prop_assert!((before - rim.radius).abs() < 1e-9 * rim.radius);
+        }
+
+        /// A lens that makes things smaller by as much undoes one that makes them larger, at every depth.
+        #[test]
+        fn opposite_lenses_undo_each_other(
+            is_parallel in any::<bool>(),
+            magnification in 1.0..1.9_f64,
+            at in 1.0..400.0_f64,
+            distance in 1.0..400.0_f64,
+            share in 0.0..1.1_f64,
+            z in 0.0..4.0_f64,
+        ) {
+            // Powers are 1 − 1/m times the same number.
+            let opposite = 1.0 / (2.0 - magnification.recip());
+            let lenses = [magnifier(magnification, at, distance, 0.4), magnifier(opposite, at, distance, 0.4)];
+            let paths = paths(&lenses, is_parallel);
+            let rim = frame(is_parallel).rim(&lenses[0]);
+            let across = rim.center + DVec2::new(0.6, 0.8) * share * rim.radius;
+            let off = seen(&paths, across, distance + z * at).distance(across);
+            prop_assert!(off < 1e-12 * rim.radius.max(1.0), "{off}");
+        }
+
+        /// Paths are of one piece each from end to end.
+        #[test]
+        fn pieces_meet(
+            is_parallel in any::<bool>(),
+            lenses in prop::collection::vec((0.3..8.0_f64, 1.0..200.0_f64, 1.0..200.0_f64, 0.0..1.0_f64, 0.1..0.9_f64), 1..5),
+            x in -1.0..1.0_f64,
+            y in -1.0..1.0_f64,
+        ) {
+            let lenses: Vec<RayLens> = lenses
+                .into_iter()
+                .map(|(m, at, distance, border, center)| RayLens { center: DVec2::splat(center), ..magnifier(m, at, distance, border) })
+                .collect();
+            let paths = paths(&lenses, is_parallel);
+            let pieces = paths.pieces(DVec2::new(x, y) * frame(is_parallel).half);
+            prop_assert_eq!(pieces.len(), 2 * lenses.iter().filter(|l| *l != &RayLens::magnifier()).count() + 1);
+            for pair in pieces.windows(2) {
+                let end = pair[0].range[1];
+                prop_assert_eq!(end, pair[1].range[0]);
+                let [a, b] = [pair[0], pair[1]].map(|piece| piece.line.at(end));
+                prop_assert!(a.distance(b) < 1e-9 * a.length().max(1.0), "{} and {}", a, b);
+            }
+        }
+    }
+
+    #[test]
+    fn a_lens_that_magnifies_by_one_is_none() {
+        assert!(paths(&[magnifier(1.0, 30.0, 20.0, 0.4)], false).is_empty());
+        assert!(!paths(&[magnifier(1.1, 30.0, 20.0, 0.4)], false).is_empty());
+    }
+
+    #[test]
+    fn what_nobody_says_is_told_from_what_is_in_the_middle() {
+        let plane = |at, distance| {
+            let bend = Bend::Magnify(Magnify { magnification: 2.0, at, distance, border: 0.4 });
+            let lens = RayLens { bend, ..RayLens::magnifier() };
+            let paths = RayPaths::new(&[(3, &lens)], &frame(false), |_| Some(100.0));
+            (paths.planes[0].lens, paths.planes[0].distance, paths.planes[0].until)
+        };
+        assert_eq!(plane(None, None), (3, 50.0, 100.0));
+        assert_eq!(plane(None, Some(80.0)), (3, 80.0, 100.0 + 20.0));
+        assert_eq!(plane(Some(30.0), None), (3, 70.0, 100.0));
+        assert_eq!(plane(Some(300.0), None), (3, 150.0, 450.0), "never behind the eye");
+    }
+
+    #[test]
+    fn a_sampling_lens_is_as_large_as_its_rate() {
+        let rate = SamplingRate::Cubic(3.0);
+        let lens = RayLens { bend: Bend::Sample(Sampling { rate: rate.clone() }), ..RayLens::sampling() };
+        let whole = (0..1000).map(|i| rate.at((f64::from(i) + 0.5) / 1000.0).recip()).sum::<f64>() / 1000.0;
+        for is_parallel in [false, true] {
+            let paths = paths(std::slice::from_ref(&lens), is_parallel);
+            let rim = frame(is_parallel).rim(&lens);
+            for share in [0.01, 0.3, 0.7, 0.95] {
+                let at = |share: f64| seen(&paths, rim.center + DVec2::new(0.0, share * rim.radius), 40.0).y;
+                let magnification = 2e-4 * rim.radius / (at(share + 1e-4) - at(share - 1e-4));
+                // A cubic between knots: its slope is right to their distance.
+                let expected = rate.at(share) * whole;
+                assert!((magnification / expected - 1.0).abs() < 1e-4, "{magnification} is not {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn fisheyes_are_straight_in_the_middle_and_see_to_their_angle() {
+        for (projection, angle) in [
+            (FisheyeProjection::Angular, 3.0),
+            (FisheyeProjection::Angular, std::f64::consts::TAU),
+            (FisheyeProjection::Hemispherical, std::f64::consts::PI),
+        ] {
+            let lens = RayLens { bend: Bend::Fisheye(Fisheye { angle, projection }), ..RayLens::fisheye() };
+            let paths = paths(std::slice::from_ref(&lens), false);
+            let direction = |share: f64, turn: f64| {
+                paths.line(0.5 * share * DVec2::from_angle(turn), 1.0).direction
+            };
+            assert_eq!(direction(0.0, 0.0), DVec3::NEG_Z);
+            // Beside the middle as the limit says.
+            let slope = if projection == FisheyeProjection::Angular { 0.5 * angle } else { (0.5 * angle).sin() };
+            assert!((direction(1e-6, 0.0).x / 1e-6 - slope).abs() < 1e-6);
+            for turn in [0.0, 1.0, 2.5] {
+                let rim = direction(1.0 - 1e-12, turn);
+                assert!((rim.z + (0.5 * angle).cos()).abs() < 1e-5, "{rim}");
+                // A line through the middle stays one.
+                let half = direction(0.5, turn);
+                assert!(half.truncate().perp_dot(DVec2::from_angle(turn)).abs() < 1e-12);
+            }
+        }
+    }
+}

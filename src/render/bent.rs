@@ -1,0 +1,92 @@
+//! Lenses that bend rays as the GPU reads them, and where in the picture they are.
+
+use glam::DVec2;
+
+use crate::{
+    lens::{
+        ray::{FisheyeProjection, RayOutline, SAMPLED_KNOTS},
+        ray_path::{ImageBend, MOST_RAY_LENSES, RayPaths, Rim},
+    },
+    render::{eye::PictureTile, layout, screen_bound::ScreenBound},
+    view::View,
+};
+
+/// Pixels around a rim: samples lie up to half a pixel beside the pixels' centres.
+const MARGIN_PX: f64 = 1.0;
+
+/// The part of a tile in which a rim lies.
+fn part_of(rim: &Rim, view: &View, tile: PictureTile) -> Option<ScreenBound> {
+    let size = DVec2::new(view.size[0].into(), view.size[1].into());
+    let half = view.half_extent();
+    let center = DVec2::new(0.5 + 0.5 * rim.center.x / half.x, 0.5 - 0.5 * rim.center.y / half.y) * size;
+    let radius = rim.radius / (2.0 * half.y) * size.y + MARGIN_PX;
+    let diagonal = match rim.outline {
+        RayOutline::Circle => std::f64::consts::SQRT_2 * radius,
+        RayOutline::Square => 2.0 * radius,
+    };
+    let reach = [radius, radius, diagonal, diagonal];
+    let middle = [center.x, center.y, center.x + center.y, center.x - center.y];
+    let ends = |sign: f64| std::array::from_fn(|i| middle[i] + sign * reach[i]);
+    ScreenBound::around(ends(-1.0), ends(1.0)).within(tile)
+}
+
+/// The parts of a tile in which rays may be bent.
+pub(super) fn parts(paths: &RayPaths, view: &View, tile: PictureTile) -> Vec<ScreenBound> {
+    paths.rims().filter_map(|rim| part_of(rim, view, tile)).collect()
+}
+
+/// All of them as the shaders read them.
+pub(super) fn uniform(paths: &RayPaths) -> layout::RayLenses {
+    let mut made: layout::RayLenses = bytemuck::Zeroable::zeroed();
+    let images = paths.images.len().min(MOST_RAY_LENSES);
+    let planes = paths.planes.len().min(MOST_RAY_LENSES - images);
+    (made.images, made.planes) = (images as u32, planes as u32);
+    let mut knots = 0;
+    for (lens, own) in made.lenses.iter_mut().zip(&paths.images) {
+        *lens = of_rim(&own.rim);
+        match &own.bend {
+            ImageBend::Sampled(radius) => {
+                lens.kind = layout::RAY_SAMPLED;
+                (lens.first_knot, lens.knots) = (knots as u32, radius.knots.len() as u32);
+                for (knot, [at, shown, slope]) in made.knots[knots..].iter_mut().zip(&radius.knots) {
+                    *knot = [*at as f32, *shown as f32, *slope as f32, 0.0];
+                }
+                knots += SAMPLED_KNOTS;
+            }
+            ImageBend::Round(angle, projection) => {
+                lens.angle = (0.5 * angle) as f32;
+                lens.kind = match projection {
+                    FisheyeProjection::Angular => layout::RAY_ANGULAR,
+                    FisheyeProjection::Hemispherical => layout::RAY_HEMISPHERICAL,
+                };
+            }
+        }
+    }
+    for (lens, own) in made.lenses[images..].iter_mut().zip(&paths.planes) {
+        *lens = layout::RayLens {
+            border: own.border as f32,
+            distance: own.distance as f32,
+            until: own.until as f32,
+            power: own.power as f32,
+            kind: layout::RAY_PLANE,
+            ..of_rim(&own.rim)
+        };
+    }
+    let events = paths.events();
+    made.events = events.len().min(made.along.len()) as u32;
+    for (slot, event) in made.along.iter_mut().zip(&events) {
+        let lens = (images + event.plane) as u32;
+        *slot =
+            layout::RayEvent { distance: event.distance as f32, lens, ends: u32::from(event.ends), reserved: 0 };
+    }
+    made
+}
+
+fn of_rim(rim: &Rim) -> layout::RayLens {
+    layout::RayLens {
+        center: rim.center.as_vec2().to_array(),
+        radius: rim.radius as f32,
+        outline: u32::from(rim.outline == RayOutline::Square),
+        ..bytemuck::Zeroable::zeroed()
+    }
+}
