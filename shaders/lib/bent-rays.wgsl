@@ -20,7 +20,6 @@ const RAY_SAMPLED: u32 = 1u;
 const RAY_ANGULAR: u32 = 2u;
 const RAY_HEMISPHERICAL: u32 = 3u;
 const OUTLINE_SQUARE: u32 = 1u;
-const MOST_RAY_LENSES: u32 = 8u;
 
 struct RayEvent {
     distance: f32,              // D, metres
@@ -34,7 +33,7 @@ struct RayLenses {
     images: u32,
     planes: u32,
     events: u32,
-    reserved: u32,
+    stretch: f32,               // from pixel to pixel rays of these turn at most so many times as far as others; FAR_AWAY: any
     lenses: array<RayLens, 8>,
     along: array<RayEvent, 16>, // nearest first
     knots: array<vec4f, 1024>,  // radius of the lens, of the picture, its derivative
@@ -42,17 +41,17 @@ struct RayLenses {
 
 @group(2) @binding(11) var<uniform> ray_lenses: RayLenses;
 
-// D up to which the rays that are asked for have gone, metres.
-var<private> seen_until: f32 = FAR_AWAY;
-
-fn look_at_distance(distance: f32) {
-    seen_until = distance;
-}
+// The line that what is looked at lies on.
+var<private> seen_ray: Ray;
+var<private> seen_pixel: vec2f;
+var<private> seen_distance: f32;
+// That whose ray was asked for last.
+var<private> asked_pixel: vec2f;
 
 // A ray on its way.
 struct Path {
     ray: Ray,
-    bent: array<vec2f, 8>,      // what each plane added to its slope
+    bent: array<vec2f, max(RAY_PLANES, 1u)>,    // what each plane added to its slope
     is_round: bool,             // of a fisheye: no plane stands in its way
 }
 
@@ -70,21 +69,21 @@ fn across_of_pixel(pixel: vec2f) -> vec2f {
 fn is_bent(pixel: vec2f) -> bool {
     let across = across_of_pixel(pixel);
     var is_in = false;
-    for (var lens = 0u; lens < ray_lenses.images + ray_lenses.planes; lens++) {
+    for (var lens = 0u; lens < RAY_IMAGES + RAY_PLANES; lens++) {
         is_in |= rim_share(lens, across) < 1.0;
     }
     return is_in;
 }
 
-// The same of the pixels within a reach of it.
-fn may_bend(pixel: vec2f, reach: f32) -> bool {
+// How many times as far as others the rays of the pixels within a reach turn at most, from one to the next.
+fn most_stretch(pixel: vec2f, reach: f32) -> f32 {
     let across = across_of_pixel(pixel);
     let width = reach * max(abs(view.across_from_pixel.x), abs(view.across_from_pixel.y));
     var may = false;
-    for (var lens = 0u; lens < ray_lenses.images + ray_lenses.planes; lens++) {
+    for (var lens = 0u; lens < RAY_IMAGES + RAY_PLANES; lens++) {
         may |= rim_share(lens, across) < 1.0 + 1.4143 * width / ray_lenses.lenses[lens].radius;
     }
-    return may;
+    return select(1.0, ray_lenses.stretch, may);
 }
 
 // The radius of the picture at one of a lens', by the radius; 1 at the rim.
@@ -131,7 +130,7 @@ fn round_ray(lens: u32, across: vec2f) -> Ray {
 fn path_of_pixel(pixel: vec2f) -> Path {
     var across = across_of_pixel(pixel);
     var path: Path;
-    for (var lens = 0u; lens < ray_lenses.images; lens++) {
+    for (var lens = 0u; lens < RAY_IMAGES; lens++) {
         let share = rim_share(lens, across);
         if share < 1.0 && !path.is_round {
             if ray_lenses.lenses[lens].kind == RAY_SAMPLED {
@@ -153,12 +152,13 @@ fn path_of_pixel(pixel: vec2f) -> Path {
 // What becomes of a ray there.
 fn pass_event(path: ptr<function, Path>, number: u32) {
     let event = ray_lenses.along[number];
-    let lens = ray_lenses.lenses[event.lens];
-    let plane = event.lens - ray_lenses.images;
+    // Of one alone nothing is looked for.
+    let plane = select(event.lens - RAY_IMAGES, 0u, RAY_PLANES == 1u);
+    let lens = ray_lenses.lenses[RAY_IMAGES + plane];
     let is_flat = view.orthographic == 1u;
     let at = (*path).ray.origin.xy + event.distance * (*path).ray.direction.xy;
     let scale = select(event.distance, 1.0, is_flat);
-    let share = rim_share(event.lens, at / scale);
+    let share = rim_share(RAY_IMAGES + plane, at / scale);
     let k = select(0.0, max((share - (1.0 - lens.border)) / lens.border, 0.0), lens.border > 0.0);
     let met = select(vec2f(0.0), -(1.0 - k) * lens.power * (at - scale * lens.center), share < 1.0);
     let ends = event.ends == 1u;
@@ -172,14 +172,49 @@ fn pass_event(path: ptr<function, Path>, number: u32) {
     (*path).ray = Ray(vec3f(origin, 0.0), vec3f(slope, -1.0));
 }
 
-// The ray through what a pixel shows at the distance that is looked at.
-fn ray_of_pixel(pixel: vec2f) -> Ray {
+// The line on which the ray of a pixel lies at a distance.
+fn bent_ray(pixel: vec2f, distance: f32) -> Ray {
     var path = path_of_pixel(pixel);
-    let count = select(ray_lenses.events, 0u, path.is_round);
-    for (var i = 0u; i < count; i++) {
-        if ray_lenses.along[i].distance < seen_until {
+    for (var i = 0u; i < 2u * RAY_PLANES; i++) {
+        if !path.is_round && ray_lenses.along[i].distance < distance {
             pass_event(&path, i);
         }
     }
     return path.ray;
+}
+
+fn see_pixel(pixel: vec2f, distance: f32) {
+    seen_pixel = pixel;
+    asked_pixel = pixel;
+    seen_distance = distance;
+    seen_ray = bent_ray(pixel, distance);
+}
+
+// The place of the picture, (x, y, -1), of the pixel whose ray this is; and where, without lenses that bend rays, what its ray meets at a distance is
+// seen.
+fn picture_place(ray: Ray) -> vec3f {
+    return vec3f(across_of_pixel(asked_pixel), -1.0);
+}
+
+fn picture_place_at(distance: f32, place: vec3f) -> vec3f {
+    let ray = bent_ray(asked_pixel, distance);
+    let at = ray.origin.xy + distance * ray.direction.xy;
+    let seen = select(at / distance, at, view.orthographic == 1u);
+    let is_round = ray.direction.z != -1.0;
+    return select(place, vec3f(seen, -1.0), distance > 0.0 && !is_round);
+}
+
+// The line of a pixel at the distance of what is looked at.
+fn ray_of_pixel(pixel: vec2f) -> Ray {
+    asked_pixel = pixel;
+    if all(pixel == seen_pixel) {
+        return seen_ray;
+    }
+    return bent_ray(pixel, seen_distance);
+}
+
+// At that of something else.
+fn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {
+    asked_pixel = pixel;
+    return bent_ray(pixel, select(FAR_AWAY, distance, distance > 0.0));
 }

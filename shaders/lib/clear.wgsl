@@ -2,9 +2,7 @@
 // does. False where that is not known. Rays of pixels go through a plane at distance 1, so from one to the next they turn by no more than a
 // pixel's width there.
 fn is_clear_of_form(s: Region, form: u32, pixel: vec2i, reach: i32) -> bool {
-    if may_bend(vec2f(pixel) + 0.5, f32(reach)) {
-        return false;
-    }
     let width = max(abs(view.across_from_pixel.x), abs(view.across_from_pixel.y));
-    return form_is_clear(ray_of_pixel(vec2f(pixel) + 0.5), s, form, 1.4143 * f32(reach) * width);
+    let turn = 1.4143 * f32(reach) * width * most_stretch(vec2f(pixel) + 0.5, f32(reach));
+    return form_is_clear(ray_at_distance(vec2f(pixel) + 0.5, -s.a.z), s, form, turn);
 }

@@ -24,9 +24,13 @@ fn sight_of(fragment: Fragment) -> Sight {
 
 // The fragment at a place of the target.
 fn fragment_at(at: vec2f, depth: f32, code: u32) -> Fragment {
+    see_pixel(at, distance_of_depth(depth));
+    return fragment_on(ray_of_pixel(at), at, depth, code);
+}
+
+// The same on a ray.
+fn fragment_on(ray: Ray, at: vec2f, depth: f32, code: u32) -> Fragment {
     let distance = distance_of_depth(depth);
-    look_at_distance(distance);
-    let ray = ray_of_pixel(at);
     let position = ray.origin + distance * ray.direction;
     let up = view.view_from_world[2];       // dot(column, p) = p's share of the world's z
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + dot(up, position);

@@ -23,6 +23,6 @@ fn inside_form(s: Region, form: u32, sight: Sight) -> u32 {
 
 // Whether the ray of a pixel's centre meets the volume.
 fn covers_form(s: Region, form: u32, pixel: vec2i) -> bool {
-    let span = span_of_form(ray_of_pixel(vec2f(pixel) + 0.5), s, form);
+    let span = span_of_form(ray_at_distance(vec2f(pixel) + 0.5, -s.a.z), s, form);
     return span.enter <= span.exit && (span.exit > 0.0 || view.orthographic == 1u);
 }

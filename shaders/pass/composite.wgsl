@@ -226,7 +226,7 @@ fn composite(in: Corner) -> Composite {
             let depth = bitcast<f32>(node.key.x);
             let normal = node.key.z;
             let code = node.key.y & NODE_CODE;
-            look_at_distance(distance_of_depth(depth));
+            see_pixel(in.clip.xy, distance_of_depth(depth));
             let ray = ray_of_pixel(in.clip.xy);
             var point = point_of(pixel, ray, depth, vec2u(code, normal), unpacked(node.light));
             point.base = point.natural;
@@ -282,7 +282,7 @@ fn composite(in: Corner) -> Composite {
         // Which of the layers is the shown surface is not known: it is what is opaque.
         if through <= 0.5 && shown.x == 0u {
             let depth = textureLoad(scene_depth, pixel, 0);
-            look_at_distance(distance_of_depth(depth));
+            see_pixel(in.clip.xy, distance_of_depth(depth));
             let ray = ray_of_pixel(in.clip.xy);
             let point = point_at(pixel, ray, depth);
             write_classes(pixel, point, classes_at(sight_of_point(point, ray), in.part.x));

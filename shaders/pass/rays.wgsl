@@ -232,6 +232,9 @@ fn first_in_city(at: vec2f, number: u32, line: Ray, range: vec2f, best: Hit) -> 
         return found;
     }
     begin_city(number);
+    seen_ray = line;
+    seen_pixel = at;
+    asked_pixel = at;
     let ray = city_ray(number, line);
     var stack: array<u32, 64>;
     var height = 1u;
@@ -258,7 +261,7 @@ fn first_in_city(at: vec2f, number: u32, line: Ray, range: vec2f, best: Hit) -> 
                 let hit = hit_of(number, ray, own.triangles + 3u * (low.w + i));
                 let is_nearer = hit.t < found.t || (hit.t == found.t && hit.t < FAR_AWAY && lies_over(found, hit));
                 if is_nearer && hit.t >= range.x && hit.t <= range.y {
-                    if is_there(at, hit) {
+                    if is_there(line, at, hit) {
                         found = hit;
                     }
                 }
@@ -273,7 +276,7 @@ fn first_of_pixel(at: vec2f) -> Hit {
     var path = path_of_pixel(at);
     var found = NO_HIT;
     var begin = view.near;
-    let count = select(ray_lenses.events, 0u, path.is_round);
+    let count = select(2u * RAY_PLANES, 0u, path.is_round);
     for (var i = 0u; i <= count; i++) {
         var end = FAR_AWAY;
         if i < count {
@@ -300,7 +303,7 @@ fn rest_of(hit: Hit) -> u32 {
 
 // The weights of the corners where a line meets the plane of a triangle.
 fn weights_beside(at: vec2f, hit: Hit) -> vec2f {
-    let ray = city_ray(hit.city, ray_of_pixel(at));
+    let ray = city_ray(hit.city, bent_ray(at, hit.t));
     let a = sheared(hit.city, ray, ray_words[hit.triangle]);
     let b = sheared(hit.city, ray, ray_words[hit.triangle + 1u]);
     let c = sheared(hit.city, ray, ray_words[hit.triangle + 2u]);
@@ -352,7 +355,6 @@ fn follow(@builtin(position) clip: vec4f) -> Followed {
         let code = code_of(hit);
         let surface = surface_at(code - 1u);
         let kind = ray_words[hit.triangle + 1u].w;
-        look_at_distance(hit.t);
         var rest = rest_of(hit);
         var normal = surface.normal;
         if SMOOTH && (kind & TRIANGLE_SMOOTH) != 0u {

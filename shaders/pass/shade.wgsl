@@ -170,7 +170,7 @@ fn unfiltered(in: Corner) -> Unfiltered {
 }
 
 fn paint_of_surface(pixel: vec2i, middle: vec2f, depth: f32, part: u32) -> vec4f {
-    look_at_distance(distance_of_depth(depth));
+    see_pixel(middle, distance_of_depth(depth));
     let ray = ray_of_pixel(middle);
     var point = point_at(pixel, ray, depth);
     let classes = classes_at(sight_of_point(point, ray), part);
@@ -179,7 +179,7 @@ fn paint_of_surface(pixel: vec2i, middle: vec2f, depth: f32, part: u32) -> vec4f
 }
 
 fn paint_of_background(pixel: vec2i, middle: vec2f, part: u32) -> vec4f {
-    look_at_distance(FAR_AWAY);
+    see_pixel(middle, FAR_AWAY);
     let ray = ray_of_pixel(middle);
     let paint = vec4f(behind_city(ray.direction * view.view_from_world), select(1.0, 0.0, BACKGROUND == NOTHING));
     let point = nowhere(pixel);

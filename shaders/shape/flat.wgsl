@@ -17,9 +17,14 @@ const DISC: f32 = 0.0;
 const RECTANGLE: f32 = 1.0;
 const POLYGON: f32 = 2.0;
 
+// The place of the picture, (x, y, -1), at which the place is seen where a ray crosses the plane of a figure.
+fn place_on_figure(ray: Ray, s: Flat) -> vec3f {
+    let a = picture_place(ray);
+    return picture_place_at(dot(s.depth, a) / dot(s.weight, a), a);
+}
+
 fn span_of_flat(ray: Ray, s: Flat) -> Span {
-    // (x, y, -1) for parallel rays, too.
-    let a = ray.origin + ray.direction;
+    let a = place_on_figure(ray, s);
     let w = dot(s.weight, a);
     let at = clamp(vec2f(dot(s.x, a), dot(s.y, a)) / w, vec2f(-1e15), vec2f(1e15));
     let enter = clamp(dot(s.depth, a) / w, -FAR_AWAY, FAR_AWAY);
@@ -62,7 +67,7 @@ fn is_behind_plane(sight: Sight, enter: f32, w: f32) -> bool {
 // Whether a place at D of the main view's ray is behind a figure, or in its plane; also where nothing is.
 fn flat_holds(s: Flat, sight: Sight) -> bool {
     let span = span_of_flat(sight.ray, s);
-    let w = dot(s.weight, sight.ray.origin + sight.ray.direction);
+    let w = dot(s.weight, place_on_figure(sight.ray, s));
     return span.enter <= span.exit && is_behind_plane(sight, span.enter, w);
 }
 
@@ -76,7 +81,7 @@ fn distance_to_sides(first: u32, count: u32, p: vec2f) -> f32 {
 
 // In the figure's plane, across its outline; what is before the plane is outside altogether. In pixels: those of the plane.
 fn distance_to_flat(s: Flat, sight: Sight, border: vec4f) -> f32 {
-    let a = sight.ray.origin + sight.ray.direction;
+    let a = place_on_figure(sight.ray, s);
     let w = dot(s.weight, a);
     let at = clamp(vec2f(dot(s.x, a), dot(s.y, a)) / w, vec2f(-1e15), vec2f(1e15));
     let enter = clamp(dot(s.depth, a) / w, -FAR_AWAY, FAR_AWAY);

@@ -15,9 +15,13 @@
 //! where f has one, and of several lenses that a ray meets powers add: one that makes things smaller by as much undoes another one.
 //! The focal point lies on the line of sight through the lens' middle, not straight before it: what is in the middle stays there.
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 
-use crate::lens::ray::{Bend, FisheyeProjection, RayLens, RayOutline, SampledRadius};
+use crate::{
+    geom::{Shape, shape::FlatFigure},
+    lens::ray::{Bend, FisheyeProjection, RayLens, RayOutline, SampledRadius},
+    view::{Camera, Projection},
+};
 
 /// Lenses that bend rays, of one picture at most.
 pub const MOST_RAY_LENSES: usize = 8;
@@ -140,6 +144,24 @@ pub struct PictureFrame {
 }
 
 impl PictureFrame {
+    /// That of a camera's picture of so many pixels.
+    pub fn new(camera: &Camera, size: [u32; 2]) -> Self {
+        let is_parallel = matches!(camera.projection, Projection::Orthographic { .. });
+        Self { half: camera.half_extent(size), is_parallel, near: camera.near_m }
+    }
+
+    /// What is seen through a lens before it bends rays, in camera coordinates: a flat figure just before all that is seen.
+    pub fn figure(&self, lens: &RayLens) -> Shape {
+        let rim = self.rim(lens);
+        let scale = if self.is_parallel { 1.0 } else { self.near };
+        let radius = rim.radius * scale;
+        let figure = match rim.outline {
+            RayOutline::Circle => FlatFigure::Disc { radius },
+            RayOutline::Square => FlatFigure::Rectangle { size: DVec2::splat(2.0 * radius) },
+        };
+        Shape::Flat { center: (scale * rim.center).extend(-self.near), rotation: DQuat::IDENTITY, figure }
+    }
+
     /// Where the rim of a lens is.
     pub fn rim(&self, lens: &RayLens) -> Rim {
         let place = DVec2::new(2.0 * lens.center.x - 1.0, 1.0 - 2.0 * lens.center.y);
@@ -210,6 +232,28 @@ impl RayPaths {
     /// Whether the ray of a place of the picture may be bent.
     pub fn bends(&self, across: DVec2) -> bool {
         self.rims().any(|rim| rim.share(across) < 1.0)
+    }
+
+    /// How many times as far from each other as without these lenses the rays of two places that lie close together are at most, wherever they
+    /// are looked at; `None`: as far as can be.
+    pub fn stretch(&self) -> Option<f64> {
+        let of_image = |lens: &ImageLens| match &lens.bend {
+            ImageBend::Sampled(radius) => {
+                let at = |[place, shown, slope]: &[f64; 3]| slope.max(if *place > 0.0 { shown / place } else { 0.0 });
+                // Between knots it may be a little more.
+                Some(1.1 * radius.knots.iter().map(at).fold(1.0, f64::max))
+            }
+            ImageBend::Round(..) => None,
+        };
+        // By the most that a plane takes from what is seen: where the ray goes on.
+        let of_plane = |lens: &PlaneLens| {
+            let e = if self.is_parallel { 0.0 } else { lens.distance.recip() };
+            let depth = lens.until - lens.distance;
+            let taken = lens.power * depth / (1.0 + depth * e);
+            (lens.border > 0.0).then(|| 1.0 + taken.abs() / lens.border + taken.abs())
+        };
+        let all = self.images.iter().map(of_image).chain(self.planes.iter().map(of_plane));
+        all.reduce(|a, b| Some(a? * b?)).unwrap_or(Some(1.0))
     }
 
     /// What happens along the view axis, nearest first.
@@ -438,6 +482,26 @@ mod tests {
                 let [a, b] = [pair[0], pair[1]].map(|piece| piece.line.at(end));
                 prop_assert!(a.distance(b) < 1e-9 * a.length().max(1.0), "{} and {}", a, b);
             }
+        }
+    }
+
+    #[test]
+    fn neighbours_are_no_farther_apart_than_the_stretch_says() {
+        for (is_parallel, magnification, border) in
+            [(false, 3.0, 0.4), (true, 3.0, 0.1), (false, 0.6, 0.7), (false, 12.0, 1.0)]
+        {
+            let lens = magnifier(magnification, 60.0, 40.0, border);
+            let paths = paths(std::slice::from_ref(&lens), is_parallel);
+            let (stretch, rim) = (paths.stretch().unwrap(), frame(is_parallel).rim(&lens));
+            let mut most: f64 = 0.0;
+            for i in 0..2000 {
+                let place = |i: u32| rim.center + DVec2::new(f64::from(i) / 2000.0 * 1.05 * rim.radius, 0.0);
+                for d in [30.0, 60.0, 90.0, 100.0, 400.0] {
+                    let apart = seen(&paths, place(i), d).distance(seen(&paths, place(i + 1), d));
+                    most = most.max(apart / place(i).distance(place(i + 1)));
+                }
+            }
+            assert!(most <= stretch && stretch < 2.5 * most, "{most} of {stretch}");
         }
     }
 

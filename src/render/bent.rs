@@ -14,6 +14,9 @@ use crate::{
 /// Pixels around a rim: samples lie up to half a pixel beside the pixels' centres.
 const MARGIN_PX: f64 = 1.0;
 
+/// As `lib/view.wgsl` has it.
+const FAR_AWAY: f32 = 1e30;
+
 /// The part of a tile in which a rim lies.
 fn part_of(rim: &Rim, view: &View, tile: PictureTile) -> Option<ScreenBound> {
     let size = DVec2::new(view.size[0].into(), view.size[1].into());
@@ -72,6 +75,7 @@ pub(super) fn uniform(paths: &RayPaths) -> layout::RayLenses {
             ..of_rim(&own.rim)
         };
     }
+    made.stretch = paths.stretch().map_or(FAR_AWAY, |stretch| stretch as f32);
     let events = paths.events();
     made.events = events.len().min(made.along.len()) as u32;
     for (slot, event) in made.along.iter_mut().zip(&events) {

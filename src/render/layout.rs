@@ -381,7 +381,7 @@ pub struct RayLenses {
     pub images: u32,
     pub planes: u32,
     pub events: u32,
-    pub reserved: u32,
+    pub stretch: f32,
     pub lenses: [RayLens; RAY_LENSES],
     pub along: [RayEvent; 2 * RAY_LENSES],
     pub knots: [[f32; 4]; RAY_KNOTS],
@@ -616,7 +616,7 @@ mod tests {
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
-        let rays = Module::Rays(None);
+        let rays = Module::Rays(None, crate::shader::Bends { images: 1, planes: 1 });
         let checks = [
             (
                 &Module::Geometry(None),
@@ -708,7 +708,7 @@ mod tests {
                 angle
             })),
             (&rays, host!(RayEvent { distance, lens, ends, reserved })),
-            (&rays, host!(RayLenses { images, planes, events, reserved, lenses, along, knots })),
+            (&rays, host!(RayLenses { images, planes, events, stretch, lenses, along, knots })),
             (&rays, host!(RayCity {
                 from_view_x,
                 from_view_y,

@@ -12,6 +12,7 @@ use crate::{
     lens::{
         BorderUnit, Class, Lens, LensBody, LensSprite, OwnRegion, Region,
         chosen::members,
+        ray_path::PictureFrame,
         solids::{Place, RegionError, ShownCity, Solids},
     },
     render::{
@@ -56,6 +57,8 @@ pub(super) struct Tools<'a> {
     pub occlusion: &'a mut Occlusion,
     /// From where.
     pub viewer: Viewer,
+    /// Its picture.
+    pub frame: PictureFrame,
     /// How the city is shown.
     pub moved: &'a Moved,
     /// The name of the lens.
@@ -74,7 +77,8 @@ pub(super) fn volumes_of<'a>(drawn: &'a Drawn, eye: &Eye, tools: &mut Tools<'a>)
         let motion = eye.motion(lens, scene, city.model);
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
         let mut of_lens: Vec<PlacedRegion> = Vec::new();
-        for (j, region) in lens.shapes.iter().enumerate() {
+        let of_rays = lens.ray().map(|ray| [Region::Shape(tools.frame.figure(ray))]);
+        for (j, region) in of_rays.iter().flatten().chain(&lens.shapes).enumerate() {
             match regions_of(region, &place, tools) {
                 Ok(mut placed) => {
                     let fades = lens.soft_border().is_some() && !ends_along_rays(lens);

@@ -18,7 +18,7 @@ use crate::{
     },
     scene::sized::POINTS,
     shader::{
-        self, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
+        self, Bends, Blend, BodyKind, ClassTest, Clip, EffectDefinition, EffectKind, Form, LensTest, PerObject, Plan,
         PlanBody, PlanBorder, PlanContent, PlanEpoch, PlanLens, Scope, Step, Uber, effect::COMING_LINES,
     },
     time::Moment,
@@ -187,8 +187,8 @@ pub struct Operations {
     pub varies: bool,
     /// The moments whose suns shine somewhere, the scene's own first; empty: one sun is everywhere.
     pub suns: Vec<Option<Moment>>,
-    /// Whether lenses bend the rays of some pixels.
-    pub bends: bool,
+    /// How many lenses bend the rays of some pixels.
+    pub bends: Bends,
     /// Which objects of the scene's own city that is.
     pub presence: Arc<[Presence]>,
     /// What lenses do to the moment, bottom lens first.
@@ -311,8 +311,8 @@ impl Operations {
     }
 
     /// Has rays of some pixels be bent.
-    pub fn bend_rays(&mut self) {
-        (self.bends, self.uber.bends) = (true, true);
+    pub fn bend_rays(&mut self, by: Bends) {
+        (self.bends, self.uber.bends) = (by, by);
     }
 
     /// The same for a frame under the sun of one of its moments.

@@ -657,7 +657,7 @@ impl Studio {
     /// Which lenses of the scene can be seen in a picture of this size: enabled, with a volume that meets it.
     pub fn lenses_in_view(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<bool>, RenderError> {
         let camera = self.camera(scene, size);
-        let volumes = self.volumes_from(scene, &camera)?;
+        let volumes = self.lens_volumes(scene, size)?;
         let view = View::new(camera, size, &Aabb::EMPTY)?;
         let mut seen = vec![false; scene.lenses.len()];
         for volume in volumes.iter().filter(|v| v.seen_part(&view, whole(size)).is_some()) {
@@ -699,13 +699,8 @@ impl Studio {
 
     /// The volumes of the scene's enabled lenses where they stand in a picture of this size.
     pub fn lens_volumes(&self, scene: &Scene, size: [u32; 2]) -> Result<Vec<LensVolume>, RenderError> {
-        self.volumes_from(scene, &self.camera(scene, size))
-    }
-
-    /// The volumes of the scene's enabled lenses where they stand for an eye.
-    fn volumes_from(&self, scene: &Scene, camera: &Camera) -> Result<Vec<LensVolume>, RenderError> {
-        let drawn = scene.drawn();
-        let mut volumes = self.surroundings().volumes(&drawn, camera, &mut self.known())?;
+        let (drawn, camera) = (scene.drawn(), self.camera(scene, size));
+        let mut volumes = self.surroundings().volumes(&drawn, &camera, size, &mut self.known())?;
         volumes.iter_mut().for_each(|volume| volume.lens = drawn.owner(volume.lens));
         Ok(volumes)
     }

@@ -37,7 +37,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{Drawn, Scene, Sun, SunTime},
-    shader::{MOST_SLOTS, MOST_VOLUMES},
+    shader::{Bends, MOST_SLOTS, MOST_VOLUMES},
     time::Moment,
     view::{Camera, CameraError, View},
 };
@@ -129,7 +129,8 @@ impl Surroundings<'_> {
         let scene = &*drawn.scene;
         let deformations = self.deformations(scene, camera, known)?;
         let eye = Eye::new(camera)?;
-        let mut found = self.placed(drawn, &eye, &deformations.moved, known)?;
+        let frame = PictureFrame::new(camera, size);
+        let mut found = self.placed(drawn, (&eye, frame), &deformations.moved, known)?;
         let technique = scene.style.technique;
         if let Some(problem) = technique.refuses(scene).or_else(|| regions::refused(scene, &found.volumes)) {
             return Err(ResolveError::Scene(problem.to_string()));
@@ -156,9 +157,7 @@ impl Surroundings<'_> {
         let view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
         let rays = self.rays(scene, &view)?;
-        if !rays.is_empty() {
-            operations.bend_rays();
-        }
+        operations.bend_rays(Bends { images: rays.images.len() as u32, planes: rays.planes.len() as u32 });
         Ok(Resolved { view, volumes, solids, operations, contents, deformations, rays, suns: Vec::new() })
     }
 
@@ -172,8 +171,8 @@ impl Surroundings<'_> {
                 lenses.len()
             )));
         }
-        let half = view.half_extent();
-        let frame = PictureFrame { half, is_parallel: view.is_orthographic(), near: view.camera.near_m };
+        let frame = PictureFrame::new(&view.camera, view.size);
+        let half = frame.half;
         let shown = |across: DVec2| {
             let size = DVec2::new(view.size[0].into(), view.size[1].into());
             let pixel = DVec2::new(0.5 + 0.5 * across.x / half.x, 0.5 - 0.5 * across.y / half.y) * size;
@@ -184,12 +183,24 @@ impl Surroundings<'_> {
     }
 
     /// The volumes of a scene's enabled lenses.
-    pub fn volumes(&self, drawn: &Drawn, camera: &Camera, known: &mut Known) -> Result<Vec<LensVolume>, ResolveError> {
+    pub fn volumes(
+        &self,
+        drawn: &Drawn,
+        camera: &Camera,
+        size: [u32; 2],
+        known: &mut Known,
+    ) -> Result<Vec<LensVolume>, ResolveError> {
         let moved = self.deformations(&drawn.scene, camera, known)?.moved;
-        Ok(self.placed(drawn, &Eye::new(camera)?, &moved, known)?.volumes)
+        Ok(self.placed(drawn, (&Eye::new(camera)?, PictureFrame::new(camera, size)), &moved, known)?.volumes)
     }
 
-    fn placed(&self, drawn: &Drawn, eye: &Eye, moved: &Moved, known: &mut Known) -> Result<LensVolumes, ResolveError> {
+    fn placed(
+        &self,
+        drawn: &Drawn,
+        (eye, frame): (&Eye, PictureFrame),
+        moved: &Moved,
+        known: &mut Known,
+    ) -> Result<LensVolumes, ResolveError> {
         let pois = &drawn.scene.pois;
         let stands = Stands::of_scene(&drawn.scene, self.city, pois, moved, &mut known.displayed);
         let mut tools = Tools {
@@ -200,6 +211,7 @@ impl Surroundings<'_> {
             solids: &mut known.solids,
             occlusion: &mut known.occlusion,
             viewer: eye.viewer(),
+            frame,
             moved,
             lens: "",
             is_enabled: true,

@@ -13,7 +13,7 @@ pub(super) fn source(hidden: Option<(String, bool)>) -> String {
 /// Where nothing is hidden.
 const ALL_IS_THERE: &str = "fn begin_city(number: u32) {}
 
-fn is_there(at: vec2f, hit: Hit) -> bool {
+fn is_there(line: Ray, at: vec2f, hit: Hit) -> bool {
     return true;
 }
 ";
@@ -32,7 +32,7 @@ const IN_CITIES: &str = "fn begin_city(number: u32) {
 ";
 
 const ASKED: &str = "
-fn is_there(at: vec2f, hit: Hit) -> bool {
-    return visible(fragment_at(at, depth_of_distance(hit.t), code_of(hit)));
+fn is_there(line: Ray, at: vec2f, hit: Hit) -> bool {
+    return visible(fragment_on(line, at, depth_of_distance(hit.t), code_of(hit)));
 }
 ";

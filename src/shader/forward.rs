@@ -10,7 +10,7 @@ use crate::shader::{
     hiding::{self, Eye},
     library::{CHANCE, DITHER, FACADE, FORWARD, FRAGMENT, FRAGMENT_NODES, GEOMETRY, SHADE, TAIL, TEXEL, TRANSLUCENT},
     names,
-    plan::program::Program,
+    plan::{Bends, program::Program},
     rays,
     shading::Shading,
     table::MOST_SLOTS,
@@ -64,7 +64,7 @@ impl Forward {
         let shade = SHADE.changed(|text| without_entry(text, "vertex", "corner_of"));
         let text = Template::of_files(&files::of_shading(&self.shading, handlers))
             .then(Template::below_path(SHADE.path, &shade))
-            .fill("ray", rays::source(false))
+            .fill("ray", rays::source(Bends::default()))
             .fill("snapping", adapter.snapping())
             .fill("carried", own.members)
             .fill("handlers", own.functions + &opacity)

@@ -50,7 +50,7 @@ pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handler
 pub use forward::{Forward, ForwardKind};
 pub use module::Module;
 pub use plan::{
-    Plan,
+    Bends, Plan,
     content::{Clip, MOST_CITIES, PlanContent},
     epoch::PlanEpoch,
     form::Form,

@@ -20,7 +20,7 @@ use crate::{
             STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
         lining,
-        plan::{Plan, form::Form, lens_test::LensTest, program::Program},
+        plan::{Bends, Plan, form::Form, lens_test::LensTest, program::Program},
         rays, regions, sections,
         shading::Shading,
         sorting, specialised,
@@ -46,8 +46,8 @@ pub enum Module {
     SpriteList,
     /// The sides of a combination, and what its leaves are.
     CombinedSprite(Vec<Form>),
-    /// Bent rays, followed through the city, and what is hidden.
-    Rays(Option<Program>),
+    /// Bent rays, followed through the city, what is hidden, and how many lenses bend them.
+    Rays(Option<Program>, Bends),
     /// Deferred shading, and what the lenses make of it.
     Shade(Program),
     /// Edges as lines, and what lenses make of them.
@@ -105,7 +105,7 @@ impl Module {
     pub fn source_for_people(&self, handlers: &[EffectDefinition], lenses: &[&str], adapter: &Adapter) -> String {
         let mut files = files::with_threshold(self.files(handlers));
         files.extend_from_slice(self.held(adapter));
-        if self.bends() {
+        if self.bends().is_any() {
             files.push(BENT_RAYS);
         }
         let text = Template::of_files(&files);
@@ -165,7 +165,7 @@ impl Module {
                 let own = plan.regions.as_ref().map(|regions| regions::marks(plan, regions, lenses));
                 text.fill("handlers", own.unwrap_or_default())
             }
-            Self::Rays(program) => {
+            Self::Rays(program, _) => {
                 let asked = program.as_ref().map(|p| (hidden(p, Eye::Rays), p.has().has_cities()));
                 text.fill("handlers", followed::source(asked))
             }
@@ -181,11 +181,11 @@ impl Module {
     }
 
     /// Whether its rays are those that lenses bend.
-    fn bends(&self) -> bool {
+    fn bends(&self) -> Bends {
         match self {
             Self::Shade(program) | Self::Composite(program) => program.has().bends,
-            Self::Rays(_) => true,
-            _ => false,
+            Self::Rays(_, bends) => *bends,
+            _ => Bends::default(),
         }
     }
 
@@ -202,8 +202,8 @@ impl Module {
     fn files(&self, handlers: &[EffectDefinition]) -> Vec<File> {
         let of: &[File] = match self {
             Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, GEOMETRY],
-            Self::Rays(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAYS],
-            Self::Rays(Some(program)) => return files::of_city(program, &[FACADE, RAYS]),
+            Self::Rays(None, _) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAYS],
+            Self::Rays(Some(program), _) => return files::of_city(program, &[FACADE, RAYS]),
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, FACADE, GEOMETRY]),
             Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SURFACE, HOLE, SHADOW],
             Self::Shadow(Some(program)) => return files::of_city(program, &[HOLE, SHADOW_CUT]),

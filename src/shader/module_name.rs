@@ -14,7 +14,7 @@ impl Module {
             Self::StoredLayers(_) => "stored sprite in layers".to_owned(),
             Self::SpriteList => "crossings of a sprite".to_owned(),
             Self::CombinedSprite(_) => "sprite of a combination".to_owned(),
-            Self::Rays(hidden) => format!("rays{}", hidden_name(hidden.as_ref())),
+            Self::Rays(hidden, _) => format!("rays{}", hidden_name(hidden.as_ref())),
             Self::Shade(program) => {
                 let names = names::of_effects(program);
                 let names = if names.is_empty() { names } else { format!(" ({names})") };

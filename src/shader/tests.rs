@@ -118,7 +118,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         timed: seed % 3 < 2,
         partly: seed % 3 == 1,
         moves: seed % 3 < 2 && seed % 7 < 3,
-        bends: seed % 4 == 1,
+        bends: Bends { images: u32::from(seed % 8 == 1), planes: (seed % 4) as u32 / 3 + u32::from(seed % 5 == 0) },
         varies: seed % 3 < 2 && seed % 5 < 2,
         lit: seed % 3 < 2 && seed % 5 < 1,
         epochs: epochs_of(seed),

@@ -1,6 +1,6 @@
 //! Cameras in model coordinates, and what makes one impossible.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Narrowest vertical field of view, radians (0.01°): below it neighbouring pixels differ by less than f32 resolves.
 pub const MIN_FOV: f64 = 0.01 * std::f64::consts::PI / 180.0;
@@ -67,6 +67,15 @@ impl Camera {
     pub fn looking(eye: DVec3, target: DVec3, fov_y: f64) -> Self {
         let near_m = default_near_m(eye.distance(target));
         Self { eye, target, up: DVec3::Z, projection: Projection::Perspective { fov_y }, near_m }
+    }
+
+    /// Half the width and height of a picture of so many pixels: at one metre in front of the eye in perspective, anywhere else.
+    pub fn half_extent(&self, size: [u32; 2]) -> DVec2 {
+        let half = match self.projection {
+            Projection::Perspective { fov_y } => (0.5 * fov_y).tan(),
+            Projection::Orthographic { height_m } => 0.5 * height_m,
+        };
+        DVec2::new(half * (f64::from(size[0]) / f64::from(size[1])), half)
     }
 
     /// Refuses what has no picture: hard case 21.

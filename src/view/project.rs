@@ -51,11 +51,7 @@ impl View {
 
     /// Half the picture's width and height: at one metre in front of the eye in perspective, anywhere else.
     pub fn half_extent(&self) -> DVec2 {
-        let half = match self.camera.projection {
-            Projection::Perspective { fov_y } => (0.5 * fov_y).tan(),
-            Projection::Orthographic { height_m } => 0.5 * height_m,
-        };
-        DVec2::new(half * self.aspect(), half)
+        self.camera.half_extent(self.size)
     }
 
     /// Whether the view is orthographic.

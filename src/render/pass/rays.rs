@@ -24,7 +24,7 @@ use crate::{
         },
     },
     scene::Technique,
-    shader::{Module, Program},
+    shader::{Bends, Module, Program},
 };
 
 /// Group 3: cities, and the triangles of their meshes.
@@ -35,6 +35,8 @@ static RAYS: GroupLayout = GroupLayout { label: "rays", entries: &[(0, S::FRAGME
 struct RayKey {
     /// What is hidden.
     hidden: Option<Program>,
+    /// How many lenses bend rays.
+    bends: Bends,
     /// Whether base colours are written.
     colored: bool,
     /// Whether normals are.
@@ -47,6 +49,7 @@ impl RayKey {
     fn new(plan: &FramePlan, programs: &Programs) -> Self {
         Self {
             hidden: programs.picture.clone(),
+            bends: plan.input.operations.bends,
             colored: plan.colored,
             smooth: plan.smooth,
             measured: plan.input.measured,
@@ -57,12 +60,12 @@ impl RayKey {
 impl PipelineKey for RayKey {
     fn name(&self) -> String {
         let flags = words(&[(self.colored, "colored"), (self.smooth, "smooth"), (self.measured, "measured")]);
-        format!("{}{flags}", Module::Rays(self.hidden.clone()).name())
+        format!("{}{flags}", Module::Rays(self.hidden.clone(), self.bends).name())
     }
 
     fn parts(&self, _: wgpu::TextureFormat) -> Parts {
         Parts {
-            module: Module::Rays(self.hidden.clone()),
+            module: Module::Rays(self.hidden.clone(), self.bends),
             groups: vec![Some(&VIEW), Some(&CUT_CITY), Some(&LENSES), Some(&RAYS)],
             constants: vec![("SMOOTH", flag(self.smooth))],
             stage: Stage::Draw(Draw {

@@ -27,6 +27,22 @@ use crate::shader::{
     },
 };
 
+/// How many lenses bend the rays of a picture: shaders are made for so many.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Bends {
+    /// Those of the picture.
+    pub images: u32,
+    /// Those with planes.
+    pub planes: u32,
+}
+
+impl Bends {
+    /// Whether there are any.
+    pub fn is_any(self) -> bool {
+        self.images + self.planes > 0
+    }
+}
+
 /// Lenses and effects of one part of the picture, bottom lens first.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Plan {
@@ -54,8 +70,8 @@ pub struct Plan {
     pub moves: bool,
     /// Whether some look otherwise at other moments.
     pub varies: bool,
-    /// Whether lenses bend the rays of some pixels.
-    pub bends: bool,
+    /// How many lenses bend the rays of some pixels.
+    pub bends: Bends,
     /// Whether the frame shows what is under the sun of one of several moments alone; then looks vary, too.
     pub lit: bool,
     /// The time operators of its lenses, bottom lens first.

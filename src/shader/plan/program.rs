@@ -2,7 +2,7 @@
 
 use crate::shader::{
     forms::Forms,
-    plan::{Plan, form::Form, lens::BodyKind, lens_test::LensTest, regions::Regions, uber::Uber},
+    plan::{Bends, Plan, form::Form, lens::BodyKind, lens_test::LensTest, regions::Regions, uber::Uber},
 };
 
 /// A plan on one of the back ends. Both make the same picture.
@@ -207,7 +207,7 @@ pub struct Parts {
     /// How places look that have another moment.
     pub varies: bool,
     /// Lenses that bend rays.
-    pub bends: bool,
+    pub bends: Bends,
     /// Soft borders of lenses.
     pub borders: bool,
     /// Borders of lenses along rays.

@@ -2,7 +2,7 @@
 
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
-    plan::{form::Form, lens::BodyKind, lens_test::LensTest},
+    plan::{Bends, form::Form, lens::BodyKind, lens_test::LensTest},
 };
 
 /// Contents of a module of the uber back end: whatever any plan of the scene may name.
@@ -46,8 +46,8 @@ pub struct Uber {
     pub moves: bool,
     /// Whether some look otherwise at other moments.
     pub varies: bool,
-    /// Whether lenses bend the rays of some pixels.
-    pub bends: bool,
+    /// How many lenses bend the rays of some pixels.
+    pub bends: Bends,
     /// Whether a frame shows what is under the sun of one of several moments alone.
     pub lit: bool,
     /// The time operators of the scene's lenses, ascending, each once.
