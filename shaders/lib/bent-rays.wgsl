@@ -143,10 +143,14 @@ fn path_of_pixel(pixel: vec2f) -> Path {
         }
     }
     if !path.is_round {
-        let is_flat = view.orthographic == 1u;
-        path.ray = Ray(vec3f(select(vec2f(0.0), across, is_flat), 0.0), vec3f(select(across, vec2f(0.0), is_flat), -1.0));
+        path.ray = straight_ray(across);
     }
     return path;
+}
+
+fn straight_ray(across: vec2f) -> Ray {
+    let is_flat = view.orthographic == 1u;
+    return Ray(vec3f(select(vec2f(0.0), across, is_flat), 0.0), vec3f(select(across, vec2f(0.0), is_flat), -1.0));
 }
 
 // What becomes of a ray there.
@@ -170,6 +174,18 @@ fn pass_event(path: ptr<function, Path>, number: u32) {
     let slope = (*path).ray.direction.xy + select(1.0, goes_on, ends) * by;
     let origin = (*path).ray.origin.xy + select(-event.distance, begins, ends) * by;
     (*path).ray = Ray(vec3f(origin, 0.0), vec3f(slope, -1.0));
+}
+
+// The line on which a ray lies at a distance that begins at a place of the picture.
+fn bent_by_planes(across: vec2f, distance: f32) -> Ray {
+    var path: Path;
+    path.ray = straight_ray(across);
+    for (var i = 0u; i < 2u * RAY_PLANES; i++) {
+        if ray_lenses.along[i].distance < distance {
+            pass_event(&path, i);
+        }
+    }
+    return path.ray;
 }
 
 // The line on which the ray of a pixel lies at a distance.

@@ -115,8 +115,11 @@ fn edge_weight(depth: f32) -> f32 {
 }
 
 fn edge_vertex(edge: Edge, i: u32, width_px: f32) -> EdgeVertex {
-    let p = view.view_from_world * city_relative(edge.origin, edge.start);
-    let q = view.view_from_world * city_relative(edge.origin, edge.end);
+    var p = view.view_from_world * city_relative(edge.origin, edge.start);
+    var q = view.view_from_world * city_relative(edge.origin, edge.end);
+    // Whether it goes on beyond what is drawn of it.
+    var goes_on = vec2<bool>(false);
+    //@bent
     let reach = 0.5 * width_px + 0.5;
     let part = edge_part(p, q, 1.0 + 2.0 * (reach + EDGE_MARGIN_PX) / view.size);
     if part.x >= part.y {
@@ -129,8 +132,8 @@ fn edge_vertex(edge: Edge, i: u32, width_px: f32) -> EdgeVertex {
     let along = select(vec2f(1.0, 0.0), span / max(extent, 1e-6), extent > 1e-6);
     let left = vec2f(-along.y, along.x);
     let is_end = (i & 1u) == 1u;
-    let onward = select(-reach, reach, is_end);
-    let across = select(reach, -reach, i >= 2u);
+    let onward = select(select(-reach, 0.0, goes_on.x), select(reach, 0.0, goes_on.y), is_end);
+    let across = select(reach, -reach, (i & 3u) >= 2u);
     let at = (select(start.xy, end.xy, is_end) + left * across + along * onward) * 2.0 / view.size;
     let line = vec3f(select(0.0, extent, is_end) + onward, across, extent);
     let ends = vec4f(start.z, end.z, part.x * edge_weight(start.z), part.y * edge_weight(end.z));

@@ -57,12 +57,13 @@ struct Pixel {
 fn fragment(in: Line) -> Pixel {
     let pixel = vec2i(in.clip.xy);
     let depth = edge_own_depth(in.line, in.ends);
+    see_pixel(in.clip.xy, distance_of_depth(depth));
     let ray = ray_of_pixel(in.clip.xy);
     let position = ray.origin + distance_of_depth(depth) * ray.direction;
     let surface = surface_at(in.surfaces.x);
     var point = nowhere(pixel);
     point.depth = depth;
-    point.distance = -position.z;
+    point.distance = distance_of_depth(depth);
     point.relative = position * view.view_from_world;
     point.normal = decode_normal(surface.normal);
     point.surface = in.surfaces.x;

@@ -1,24 +1,41 @@
-//! Rays followed through the city: what `pass/rays.wgsl` leaves open.
+//! Rays followed through the city: what `lib/ray-walk.wgsl` leaves open.
 
 /// Which city a ray is in, and whether what it meets there is there. `hidden`: what hides something, and whether there are other cities than the
 /// scene's own; `None`: nothing does.
 pub(super) fn source(hidden: Option<(String, bool)>) -> String {
     match hidden {
-        None => ALL_IS_THERE.to_owned(),
-        Some((hidden, true)) => hidden + IN_CITIES + ASKED,
-        Some((hidden, false)) => hidden + IN_ONE + ASKED,
+        None => cities(false).to_owned() + ALL_IS_THERE,
+        Some((hidden, has_cities)) => hidden + cities(has_cities) + ASKED,
     }
 }
 
-/// Where nothing is hidden.
-const ALL_IS_THERE: &str = "fn begin_city(number: u32) {}
+/// How a city is begun; whether there are others than the scene's own.
+pub(super) fn cities(has_cities: bool) -> &'static str {
+    if has_cities { IN_CITIES } else { IN_ONE }
+}
 
+/// What becomes of a hit where the first one is looked for.
+pub(super) const FIRST: &str = "                    if is_there(line, at, hit) {
+                        found = hit;
+                    }
+";
+
+/// The same where all are noted.
+pub(super) const ALL: &str = "                    note_hit(line, at, hit);
+";
+
+/// Of fragments that are drawn, those are left out that bent rays meet in other places.
+pub(super) const LEFT_OUT: &str = "    if is_bent(at) {
+        return;
+    }
+";
+
+const ALL_IS_THERE: &str = "
 fn is_there(line: Ray, at: vec2f, hit: Hit) -> bool {
     return true;
 }
 ";
 
-/// Where no city stands elsewhere than the scene's own.
 const IN_ONE: &str = "fn begin_city(number: u32) {}
 ";
 

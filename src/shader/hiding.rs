@@ -26,6 +26,8 @@ pub(super) enum Eye {
     Fragments,
     /// The picture's, in a module that follows rays.
     Rays,
+    /// The same, for what is translucent.
+    RayLayers,
     /// The sun's: of a place that the picture may not show, the regions' numbers alone say where it is.
     Sun,
 }
@@ -44,7 +46,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         let _ = writeln!(text, "@group(2) @binding(2) var<uniform> parameters: array<vec4f, {slots}>;");
     }
     match eye {
-        Eye::Picture | Eye::Layers | Eye::Fragments | Eye::Rays => {
+        Eye::Picture | Eye::Layers | Eye::Fragments | Eye::Rays | Eye::RayLayers => {
             text.push_str(&lens_test::bindings(program, false));
         }
         Eye::Sun if !program.has().lenses => {}
@@ -63,7 +65,7 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
         let _ = write!(text, "// ==== effect {}\n\n{}\n\n", effect.name, source.trim_end());
     }
     text.push_str(&epochs::operators(program, handlers));
-    let is_layers = matches!(eye, Eye::Layers | Eye::Fragments);
+    let is_layers = matches!(eye, Eye::Layers | Eye::Fragments | Eye::RayLayers);
     match program {
         Program::Specialised(plan) => {
             text.push_str("// ==== this scene\n\n");
@@ -77,9 +79,9 @@ pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[
 /// Where vertices stand.
 fn cities(program: &Program, eye: Eye) -> String {
     match (eye, program.has().has_cities()) {
-        (Eye::Picture | Eye::Layers | Eye::Fragments | Eye::Rays, false) => String::new(),
+        (Eye::Picture | Eye::Layers | Eye::Fragments | Eye::Rays | Eye::RayLayers, false) => String::new(),
         // Rays go from city to city.
-        (Eye::Rays, true) => "var<private> city: City;\n".to_owned(),
+        (Eye::Rays | Eye::RayLayers, true) => "var<private> city: City;\n".to_owned(),
         (Eye::Picture | Eye::Layers, true) => contents::binding(1, 3, "city"),
         // Group 1 is that of shading.
         (Eye::Fragments, true) => contents::binding(0, 5, "city"),

@@ -64,7 +64,11 @@ files! {
     VIEW = "lib/view.wgsl";
     VIEW_UNIFORM = "lib/view-uniform.wgsl";
     BENT_RAYS = "lib/bent-rays.wgsl";
+    BENT_EDGES = "lib/bent-edges.wgsl";
     RAYS = "pass/rays.wgsl";
+    RAY_WALK = "lib/ray-walk.wgsl";
+    RAY_LAYERS = "pass/ray-layers.wgsl";
+    LAYER_NODES = "lib/layer-nodes.wgsl";
     FACADE = "lib/facade.wgsl";
     SURFACE = "lib/surface.wgsl";
     COLOR = "lib/color.wgsl";

@@ -23,6 +23,12 @@ use crate::shader::{
     writer::Writer,
 };
 
+/// Edges in parts, where lenses that bend rays show them.
+pub(super) const BENT: &str = "    goes_on = bent_part(&p, &q, i / 4u);\n";
+
+/// Parts of an edge that such lenses bend, as `lib/bent-edges.wgsl` has them.
+pub const BENT_PARTS: u32 = 12;
+
 /// `line_at` and what it calls. `names` of a plan's lenses become comments.
 pub(super) fn source(program: &Program, handlers: &[EffectDefinition], names: &[&str]) -> String {
     let mut text = match program {

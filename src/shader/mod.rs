@@ -49,6 +49,7 @@ pub use deforming::{DEFORMER_NUMBERS, DeformPlan, PlanControl, PlanDeformer, Pla
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
 pub use forward::{Forward, ForwardKind};
 pub use module::Module;
+pub use lining::BENT_PARTS;
 pub use plan::{
     Bends, Plan,
     content::{Clip, MOST_CITIES, PlanContent},

@@ -13,9 +13,9 @@ use crate::{
         geometry::{self, Drawn, NOTHING_CUT},
         hiding::{self, Eye},
         library::{
-            AMBIENT_OCCLUSION, BARE, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM,
+            AMBIENT_OCCLUSION, BARE, BENT_EDGES, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM,
             DEPTH_CODE, FACADE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS,
-            HOLE, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
+            HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, RAY_LAYERS, RAY_WALK, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
             SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS,
             STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
@@ -56,6 +56,8 @@ pub enum Module {
     Layers(Program, bool),
     /// Translucent layers, one over the other, and what the lenses make of each.
     Composite(Program),
+    /// Translucent layers that bent rays meet, and what is translucent.
+    RayLayers(Program),
     /// How many layers the pixel has that has most.
     CountLayers,
     /// Long lists of layers in order.
@@ -107,6 +109,7 @@ impl Module {
         files.extend_from_slice(self.held(adapter));
         if self.bends().is_any() {
             files.push(BENT_RAYS);
+            files.extend(matches!(self, Self::Lines(_)).then_some(BENT_EDGES));
         }
         let text = Template::of_files(&files);
         let text = match files.contains(&VIEW) {
@@ -132,8 +135,9 @@ impl Module {
             }
             Self::Layers(program, is_early) => {
                 let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
+                let elsewhere = if program.has().bends.is_any() { followed::LEFT_OUT } else { "" };
                 translucent::filled(
-                    text,
+                    text.fill("elsewhere", elsewhere),
                     DepthTest::of_nodes(*is_early),
                     program.has().contents,
                     Some("opaque_depth"),
@@ -153,7 +157,10 @@ impl Module {
                 .fill("opaque-depth", OPAQUE_DEPTH)
                 .fill("behind-plane", behind_plane("opaque_depth"))
             }
-            Self::Lines(program) => text.fill("handlers", lining::source(program, handlers, lenses)),
+            Self::Lines(program) => {
+                let bent = if program.has().bends.is_any() { lining::BENT } else { "" };
+                text.fill("handlers", lining::source(program, handlers, lenses)).fill("bent", bent)
+            }
             Self::Refine(plan) => text.fill("deformers", plan.shown(handlers)).fill("traced", plan.traced(handlers)),
             Self::Geometry(None) => geometry::filled(text, Drawn::Surfaces, NOTHING_CUT),
             Self::Geometry(Some(program)) => {
@@ -167,7 +174,12 @@ impl Module {
             }
             Self::Rays(program, _) => {
                 let asked = program.as_ref().map(|p| (hidden(p, Eye::Rays), p.has().has_cities()));
-                text.fill("handlers", followed::source(asked))
+                text.fill("handlers", followed::source(asked)).fill("met", followed::FIRST)
+            }
+            Self::RayLayers(program) => {
+                let (hidden, has_cities) = (hidden(program, Eye::RayLayers), program.has().has_cities());
+                let handlers = hidden + followed::cities(has_cities);
+                text.fill("handlers", handlers).fill("met", followed::ALL).leave("elsewhere")
             }
             Self::Shadow(Some(program)) => text.fill("handlers", hidden(program, Eye::Sun)),
             Self::Filter(effect) => {
@@ -183,7 +195,9 @@ impl Module {
     /// Whether its rays are those that lenses bend.
     fn bends(&self) -> Bends {
         match self {
-            Self::Shade(program) | Self::Composite(program) => program.has().bends,
+            Self::Shade(program) | Self::Composite(program) | Self::Layers(program, _) | Self::RayLayers(program) | Self::Lines(program) => {
+                program.has().bends
+            }
             Self::Rays(_, bends) => *bends,
             _ => Bends::default(),
         }
@@ -202,8 +216,8 @@ impl Module {
     fn files(&self, handlers: &[EffectDefinition]) -> Vec<File> {
         let of: &[File] = match self {
             Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, GEOMETRY],
-            Self::Rays(None, _) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAYS],
-            Self::Rays(Some(program), _) => return files::of_city(program, &[FACADE, RAYS]),
+            Self::Rays(None, _) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAYS],
+            Self::Rays(Some(program), _) => return files::of_city(program, &[FACADE, RAY_WALK, RAYS]),
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, FACADE, GEOMETRY]),
             Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SURFACE, HOLE, SHADOW],
             Self::Shadow(Some(program)) => return files::of_city(program, &[HOLE, SHADOW_CUT]),
@@ -238,7 +252,11 @@ impl Module {
             }
             Self::Sections(program) => return files::of_sections(program),
             Self::Layers(program, _) => {
-                return files::of_translucent_city(program, &[FACADE, GEOMETRY, FRAGMENT_NODES, LAYERS]);
+                return files::of_translucent_city(program, &[FACADE, GEOMETRY, FRAGMENT_NODES, LAYER_NODES, LAYERS]);
+            }
+            Self::RayLayers(program) => {
+                let own = [FACADE, FRAGMENT_NODES, LAYER_NODES, RAY_WALK, RAY_LAYERS];
+                return files::of_translucent_city(program, &own);
             }
             Self::Slots(program, _) => {
                 return files::of_translucent_city(program, &[FACADE, GEOMETRY, FRAGMENT_NODES, SLOTS, TRANSLUCENT]);

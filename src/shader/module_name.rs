@@ -32,6 +32,7 @@ impl Module {
                 let uber = names::of_backend(program);
                 format!("composite{uber} ({})", names::of_effects(program))
             }
+            Self::RayLayers(program) => format!("layers of rays{}", names::of_hidden(program)),
             Self::CountLayers => "count layers".to_owned(),
             Self::SortLayers => "sort layers".to_owned(),
             Self::ShownLayers => "shown layers".to_owned(),

@@ -15,6 +15,7 @@ use crate::{
             composite::{Band, CompositeKey, HEADER, LayerLists, POOLS, composite},
             context::{Board, FrameContext, Keys, Line, Pass},
             layering::{self, LayerPrograms, Layering},
+            rays::{Followed, RAYS},
             section_kind::{GeometryKind, Normals},
             translucent::draw_translucent,
         },
@@ -144,6 +145,47 @@ impl PipelineKey for ListKey {
     }
 }
 
+/// Layers that bent rays meet.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct RayListKey {
+    /// What is translucent.
+    program: Program,
+    smooth: bool,
+    textured: bool,
+    texels_emit: bool,
+}
+
+impl RayListKey {
+    fn new(plan: &FramePlan, program: &Program) -> Self {
+        let textured = layering::has_colors(plan);
+        Self { program: program.clone(), smooth: plan.smooth, textured, texels_emit: plan.texels_emit }
+    }
+}
+
+impl PipelineKey for RayListKey {
+    fn name(&self) -> String {
+        let flags =
+            words(&[(self.textured, "textured"), (self.texels_emit, "of light"), (self.smooth, "smooth")]);
+        format!("{}{flags}", Module::RayLayers(self.program.clone()).name())
+    }
+
+    fn parts(&self, _: wgpu::TextureFormat) -> Parts {
+        Parts {
+            module: Module::RayLayers(self.program.clone()),
+            groups: vec![Some(&LAYERS), Some(&CUT_CITY), Some(&LENSES), Some(&RAYS)],
+            constants: vec![
+                ("SMOOTH", flag(self.smooth)),
+                ("TEXTURED", flag(self.textured)),
+                ("TEXELS_EMIT", flag(self.texels_emit)),
+            ],
+            stage: Stage::Draw(Draw {
+                depth: Some(depth_test(wgpu::CompareFunction::Always, false)),
+                ..Draw::new("vertex", Some("note_rays"))
+            }),
+        }
+    }
+}
+
 /// What goes through all lists, of nodes of so many words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum OrderKey {
@@ -177,6 +219,15 @@ impl PipelineKey for OrderKey {
 fn sorting(words: u32, longest: u32) -> Vec<OrderKey> {
     let widths = (0..32).map(|step| 1_u32 << step).take_while(|width| *width < longest);
     widths.map(|width| OrderKey::Sort { words, width }).collect()
+}
+
+/// What two parts of a picture have in common.
+fn overlap(a: PictureTile, b: PictureTile) -> Option<PictureTile> {
+    let origin = [0, 1].map(|i| a.origin[i].max(b.origin[i]));
+    let end = [0, 1].map(|i| a.end(i).min(b.end(i)));
+    let size = [0, 1].map(|i| end[i].saturating_sub(origin[i]));
+    let common = PictureTile { origin, size };
+    (!common.is_empty()).then_some(common)
 }
 
 /// Halves of a band, the longer side halved; `None` of one pixel.
@@ -236,6 +287,8 @@ struct Run<'a> {
     composite: CompositeKey,
     sort: Vec<OrderKey>,
     count: Option<OrderKey>,
+    /// Where rays are bent.
+    followed: Option<&'a Followed>,
 }
 
 impl ExactLayers {
@@ -321,20 +374,37 @@ impl Run<'_> {
             scissor(pass, band.tile);
             pass.set_bind_group(0, &view, &[]);
             pass.set_bind_group(2, &groups.lenses, &[]);
-            draw_translucent(
+            let mut counted = draw_translucent(
                 self.frame,
                 pass,
                 self.layering.cut,
                 true,
                 |section, all| list_key(plan, self.noting, section, all),
                 |pass, offset| pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
-            )
+            );
+            for part in self.followed.iter().flat_map(|followed| &followed.parts) {
+                let Some(part) = overlap(*part, band.tile) else { continue };
+                counted += self.note_rays(pass, part);
+            }
+            counted
         });
         lists.read_header(gpu, recording, |bytes| {
             let header: [u32; HEADER as usize] = bytemuck::pod_read_unaligned(&bytes[..4 * HEADER as usize]);
             let nodes = header[16..].iter().step_by(16).map(|pool| u64::from(*pool)).sum();
             Listed { nodes, spilled: header[0].into(), longest: header[2] }
         })
+    }
+
+    /// Notes what bent rays meet in a part of the picture.
+    fn note_rays(&self, pass: &mut wgpu::RenderPass, part: PictureTile) -> Counted {
+        let FrameContext { groups, pipelines, plan, .. } = *self.frame;
+        let Some(followed) = self.followed else { return Counted::NONE };
+        scissor(pass, part);
+        pass.set_pipeline(pipelines.get(&RayListKey::new(plan, self.noting)));
+        pass.set_bind_group(1, &groups.cut_city, &[0; 2]);
+        pass.set_bind_group(3, &followed.group, &[]);
+        pass.draw(0..3, 0..1);
+        Counted { draws: 1, triangles: 1 }
     }
 
     /// Goes through all lists of the picture.
@@ -475,6 +545,9 @@ impl Pass for ExactLayers {
         keys.add_programs(28, [self.composite_key(plan, composite)]);
         keys.add_programs(28, count_key(plan));
         keys.add_programs(28, sorting(layering::words(plan), self.longest));
+        if plan.input.operations.bends.is_any() {
+            keys.add_programs(28, [RayListKey::new(plan, noting)]);
+        }
         keys.add(30, plan.sections.iter().flat_map(|s| [false, true].map(|all| list_key(plan, noting, s, all))));
     }
 
@@ -483,7 +556,7 @@ impl Pass for ExactLayers {
         layering: &Layering,
         frame: &FrameContext,
         recording: &mut Recording,
-        _: &mut Board,
+        board: &mut Board,
     ) -> Result<(), GpuError> {
         let plan = frame.plan;
         let Some(programs) = LayerPrograms::of(frame.programs) else { return Ok(()) };
@@ -498,6 +571,7 @@ impl Pass for ExactLayers {
             sort: sorting(words, self.longest),
             // How many layers there are at most is known after the last band.
             count: count_key(plan),
+            followed: board.get(),
         };
         let most = plan.settings.most_layers.unwrap_or(LAYER_BYTES / (4 * u64::from(words)));
         let limits = Limits { words: u64::from(words), most };

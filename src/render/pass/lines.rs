@@ -25,7 +25,7 @@ use crate::{
         },
         standing::{Placement, World},
     },
-    shader::{EffectDefinition, Module, Plan, Program, Scope, Step, handlers},
+    shader::{BENT_PARTS, EffectDefinition, Module, Plan, Program, Scope, Step, handlers},
 };
 
 /// Group 3: the stage and the city, at dynamic offsets.
@@ -166,14 +166,19 @@ impl Lines {
         let is_shown = |bounds: &Aabb| {
             of.content.is_none_or(|number| number == 0 || cut.is_some_and(|c| c.hiding.shows(number, bounds, view)))
         };
+        let is_bent = frame.plan.input.operations.bends.is_any();
+        let parts = if is_bent { BENT_PARTS } else { 1 };
         let mut counted = Counted::NONE;
         pass.set_vertex_buffer(0, of.edges.instances.slice(..));
         for range in of.edges.draws(|bounds| {
             let placed = of.placement.boxed(bounds);
-            frustum.meets(&placed) && is_wanted(&placed) && is_shown(&placed)
+            (is_bent || frustum.meets(&placed) && is_wanted(&placed)) && is_shown(&placed)
         }) {
-            counted += Counted { draws: 1, triangles: 2 * u64::from(range.end - range.start) };
-            pass.draw(0..VERTICES, range);
+            let triangles = 2 * u64::from(range.end - range.start);
+            counted += Counted { draws: parts, triangles: u64::from(parts) * triangles };
+            for part in 0..parts {
+                pass.draw(part * VERTICES..(part + 1) * VERTICES, range.clone());
+            }
         }
         counted
     }

@@ -28,7 +28,7 @@ use crate::{
 };
 
 /// Group 3: cities, and the triangles of their meshes.
-static RAYS: GroupLayout = GroupLayout { label: "rays", entries: &[(0, S::FRAGMENT, UNIFORM), (1, S::FRAGMENT, STORAGE)] };
+pub static RAYS: GroupLayout = GroupLayout { label: "rays", entries: &[(0, S::FRAGMENT, UNIFORM), (1, S::FRAGMENT, STORAGE)] };
 
 /// Rays that are followed.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -81,6 +81,13 @@ impl PipelineKey for RayKey {
             }),
         }
     }
+}
+
+/// Where rays are bent, and what they are followed through: for passes that follow them, too.
+#[derive(Clone, Debug)]
+pub struct Followed {
+    pub parts: Vec<PictureTile>,
+    pub group: wgpu::BindGroup,
 }
 
 /// What the pass keeps, once there were lenses that bend rays.
@@ -152,9 +159,10 @@ impl Pass for Rays {
         parts: &Vec<PictureTile>,
         frame: &FrameContext,
         recording: &mut Recording,
-        _: &mut Board,
+        board: &mut Board,
     ) -> Result<(), GpuError> {
         let Some(kept) = &self.0 else { return Ok(()) };
+        board.put(Followed { parts: parts.clone(), group: kept.group.clone() });
         let FrameContext { targets, groups, plan, .. } = *frame;
         let targeted = in_order([
             Some(&targets.codes),

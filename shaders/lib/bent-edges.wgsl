@@ -1,0 +1,147 @@
+// Where lenses that bend rays show the places of edges.
+
+// Parts of an edge that lenses bend: each is drawn straight.
+const EDGE_PARTS: u32 = 12u;
+
+// A place of the picture at which a plane shows what lies at D, as without it `across` has it: the inverse of what it does to rays, by itself.
+fn shown_by_plane(lens: u32, across: vec2f, distance: f32) -> vec2f {
+    let own = ray_lenses.lenses[lens];
+    let share = rim_share(lens, across);
+    if distance <= own.distance || share >= 1.0 {
+        return across;
+    }
+    let e = select(1.0 / own.distance, 0.0, view.orthographic == 1u);
+    let z = min(distance, own.until) - own.distance;
+    // Of the radius r its core takes this part: r (1 - (1-k) taken) is where it is without it, k rising over the border.
+    let taken = z * own.power / (1.0 + z * e);
+    let core = 1.0 - own.border;
+    var radius = share / (1.0 - taken);
+    if radius > core && own.border > 0.0 {
+        let a = taken / own.border;
+        let b = 1.0 - taken - a * core;
+        radius = select((sqrt(max(b * b + 4.0 * a * share, 0.0)) - b) / (2.0 * a), share / b, abs(a) < 1e-6);
+    }
+    let scale = select(1.0 / (1.0 - taken), radius / share, share > 1e-6);
+    return own.center + min(radius / max(share, 1e-6), scale) * (across - own.center);
+}
+
+// Where the ray of a place of the picture is at D, as without lenses the picture has it.
+fn seen_by_planes(across: vec2f, distance: f32) -> vec2f {
+    let ray = bent_by_planes(across, distance);
+    let at = ray.origin.xy + distance * ray.direction.xy;
+    return select(at / distance, at, view.orthographic == 1u);
+}
+
+// The place of the picture at which planes show it.
+fn shown_by_planes(across: vec2f, distance: f32) -> vec2f {
+    var found = across;
+    for (var i = 0u; i < RAY_PLANES; i++) {
+        found = shown_by_plane(RAY_IMAGES + i, found, distance);
+    }
+    // Several bend what others have bent.
+    for (var i = 0u; i < select(0u, 12u, RAY_PLANES > 1u); i++) {
+        found += across - seen_by_planes(found, distance);
+    }
+    return found;
+}
+
+// The place of the lens at which a sampling-rate lens shows one of the picture.
+fn shown_by_sampling(lens: u32, across: vec2f) -> vec2f {
+    let share = rim_share(lens, across);
+    if share >= 1.0 || share < 1e-6 {
+        return across;
+    }
+    var low = 0.0;
+    var high = 1.0;
+    for (var i = 0; i < 20; i++) {
+        let middle = 0.5 * (low + high);
+        if middle * sampled_scale(lens, middle) < share {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let center = ray_lenses.lenses[lens].center;
+    return center + 0.5 * (low + high) / share * (across - center);
+}
+
+// The place of the picture at which a fisheye shows a place, and how far it is; beyond its rim: z < 0.
+fn shown_by_fisheye(lens: u32, p: vec3f) -> vec3f {
+    let own = ray_lenses.lenses[lens];
+    let middle = select(own.center, vec2f(0.0), view.orthographic == 1u);
+    let forward = normalize(vec3f(middle, -1.0));
+    let right = normalize(vec3f(-forward.z, 0.0, forward.x));
+    let up = cross(right, forward);
+    let distance = length(p);
+    let aside = vec2f(dot(p, right), dot(p, up));
+    let size = length(aside);
+    let turn = atan2(size, dot(p, forward));
+    let is_angular = own.kind == RAY_ANGULAR;
+    let share = select(sin(turn) / sin(own.angle), turn / own.angle, is_angular);
+    let is_in = share < 1.0 && (is_angular || dot(p, forward) >= 0.0);
+    let way = select(vec2f(0.0), aside / size, size > 0.0);
+    return vec3f(own.center + own.radius * share * way, select(-1.0, distance, is_in));
+}
+
+// Where a place would be, in view space, if no lens bent the ray that shows it.
+fn displayed(p: vec3f) -> vec3f {
+    let is_flat = view.orthographic == 1u;
+    let distance = -p.z;
+    var shown = p;
+    if distance > 0.0 {
+        let across = shown_by_planes(p.xy / select(distance, 1.0, is_flat), distance);
+        shown = vec3f(across * select(distance, 1.0, is_flat), p.z);
+    }
+    for (var k = 0u; k < RAY_IMAGES; k++) {
+        // The lowest first.
+        let lens = RAY_IMAGES - 1u - k;
+        if ray_lenses.lenses[lens].kind == RAY_SAMPLED {
+            if shown.z < 0.0 {
+                let scale = select(-shown.z, 1.0, is_flat);
+                shown = vec3f(shown_by_sampling(lens, shown.xy / scale) * scale, shown.z);
+            }
+        } else {
+            let at = shown_by_fisheye(lens, p);
+            if at.z >= 0.0 {
+                shown = vec3f(at.xy * select(at.z, 1.0, is_flat), -at.z);
+            } else if shown.z < 0.0 && rim_share(lens, shown.xy / select(-shown.z, 1.0, is_flat)) < 1.0 {
+                // It shows something else there.
+                shown = vec3f(0.0, 0.0, 1.0);
+            }
+        }
+    }
+    return shown;
+}
+
+// Whether what is between two places may be in a lens.
+fn may_be_bent(p: vec3f, q: vec3f) -> bool {
+    let is_flat = view.orthographic == 1u;
+    if !is_flat && (p.z >= -view.near || q.z >= -view.near) {
+        return true;
+    }
+    let a = p.xy / select(-p.z, 1.0, is_flat);
+    let b = q.xy / select(-q.z, 1.0, is_flat);
+    var may = false;
+    for (var lens = 0u; lens < RAY_IMAGES + RAY_PLANES; lens++) {
+        let own = ray_lenses.lenses[lens];
+        let along = b - a;
+        let t = clamp(dot(own.center - a, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
+        may |= length(a + t * along - own.center) < 1.42 * own.radius || own.kind >= RAY_ANGULAR;
+    }
+    return may;
+}
+
+// The ends of a part of an edge where they are shown; in one part what no lens bends. Whether the edge goes on beyond its start, and its end.
+fn bent_part(p: ptr<function, vec3f>, q: ptr<function, vec3f>, part: u32) -> vec2<bool> {
+    if !may_be_bent(*p, *q) {
+        if part > 0u {
+            *q = *p;
+        }
+        return vec2<bool>(false);
+    }
+    let a = *p;
+    let b = *q;
+    *p = displayed(mix(a, b, f32(part) / f32(EDGE_PARTS)));
+    *q = displayed(mix(a, b, f32(part + 1u) / f32(EDGE_PARTS)));
+    return vec2<bool>(part > 0u, part + 1u < EDGE_PARTS);
+}
