@@ -95,19 +95,17 @@ fn displayed(p: vec3f) -> vec3f {
     for (var k = 0u; k < RAY_IMAGES; k++) {
         // The lowest first.
         let lens = RAY_IMAGES - 1u - k;
-        if ray_lenses.lenses[lens].kind == RAY_SAMPLED {
-            if shown.z < 0.0 {
-                let scale = select(-shown.z, 1.0, is_flat);
-                shown = vec3f(shown_by_sampling(lens, shown.xy / scale) * scale, shown.z);
-            }
-        } else {
-            let at = shown_by_fisheye(lens, p);
-            if at.z >= 0.0 {
-                shown = vec3f(at.xy * select(at.z, 1.0, is_flat), -at.z);
-            } else if shown.z < 0.0 && rim_share(lens, shown.xy / select(-shown.z, 1.0, is_flat)) < 1.0 {
-                // It shows something else there.
-                shown = vec3f(0.0, 0.0, 1.0);
-            }
+        let is_sampled = ray_lenses.lenses[lens].kind == RAY_SAMPLED;
+        let scale = select(max(-shown.z, view.near), 1.0, is_flat);
+        let is_within = shown.z < 0.0 && rim_share(lens, shown.xy / scale) < 1.0;
+        let at = shown_by_fisheye(lens, p);
+        if is_sampled && is_within {
+            shown = vec3f(shown_by_sampling(lens, shown.xy / scale) * scale, shown.z);
+        } else if !is_sampled && at.z >= 0.0 {
+            shown = vec3f(at.xy * select(at.z, 1.0, is_flat), -at.z);
+        } else if !is_sampled && is_within {
+            // It shows something else there.
+            shown = vec3f(0.0, 0.0, 1.0);
         }
     }
     return shown;
@@ -116,7 +114,8 @@ fn displayed(p: vec3f) -> vec3f {
 // Whether what is between two places may be in a lens.
 fn may_be_bent(p: vec3f, q: vec3f) -> bool {
     let is_flat = view.orthographic == 1u;
-    if !is_flat && (p.z >= -view.near || q.z >= -view.near) {
+    let is_before = (p.z >= -view.near) | (q.z >= -view.near);
+    if is_before & !is_flat {
         return true;
     }
     let a = p.xy / select(-p.z, 1.0, is_flat);

@@ -26,7 +26,9 @@ struct RayCity {
 const NO_BOXES: u32 = 0xffffffffu;
 const TRIANGLE_IN_PLANE: u32 = 1u;      // its depth is that of a plane, which is the first of its rest
 const TRIANGLE_FACADE: u32 = 2u;        // with storeys and windows
-const TRIANGLE_LAYER_SHIFT: u32 = 8u;   // which layer of its plane it is
+const TRIANGLE_LAYER_SHIFT: u32 = 8u;   // which layer of its plane it is, 8 bits
+const TRIANGLE_LAYERS: u32 = 0xffu;
+const TRIANGLE_SECTION_SHIFT: u32 = 16u;    // above it: which section it is of, from 1, where that has images
 const TRIANGLE_SMOOTH: u32 = 4u;        // with a normal per corner
 const TRIANGLE_PLACED: u32 = 8u;        // with texture coordinates
 const MOST_DEPTH: u32 = 64u;
@@ -39,8 +41,7 @@ struct RayCities {
     all: array<RayCity, 128>,
 }
 
-@group(3) @binding(0) var<uniform> ray_cities: RayCities;
-@group(3) @binding(1) var<storage, read> ray_words: array<vec4u>;
+//@bindings
 
 //@handlers
 
@@ -208,8 +209,8 @@ fn distance_to_plane(number: u32, ray: CityRay, rest: u32, t: f32) -> f32 {
 
 // Of two hits that are as far, whether the second one lies over the first.
 fn lies_over(first: Hit, second: Hit) -> bool {
-    let layer_of_first = ray_words[first.triangle + 1u].w >> TRIANGLE_LAYER_SHIFT;
-    let layer_of_second = ray_words[second.triangle + 1u].w >> TRIANGLE_LAYER_SHIFT;
+    let layer_of_first = (ray_words[first.triangle + 1u].w >> TRIANGLE_LAYER_SHIFT) & TRIANGLE_LAYERS;
+    let layer_of_second = (ray_words[second.triangle + 1u].w >> TRIANGLE_LAYER_SHIFT) & TRIANGLE_LAYERS;
     return layer_of_second > layer_of_first || (layer_of_second == layer_of_first && second.triangle < first.triangle);
 }
 
@@ -221,16 +222,13 @@ fn code_of(hit: Hit) -> u32 {
 fn first_in_city(at: vec2f, number: u32, line: Ray, range: vec2f, best: Hit) -> Hit {
     let own = ray_cities.all[number];
     var found = best;
-    if own.boxes == NO_BOXES {
-        return found;
-    }
     begin_city(number);
     seen_ray = line;
     seen_pixel = at;
     asked_pixel = at;
     let ray = city_ray(number, line);
     var stack: array<u32, 64>;
-    var height = 1u;
+    var height = select(1u, 0u, own.boxes == NO_BOXES);
     stack[0] = own.boxes;
     while height > 0u {
         height -= 1u;
@@ -304,15 +302,19 @@ fn weights_beside(at: vec2f, hit: Hit) -> vec2f {
     return vec2f(v, w) / (u + v + w);
 }
 
+fn texcoords_of(rest: u32) -> mat3x2f {
+    let first = bitcast<vec4f>(ray_words[rest]);
+    let second = bitcast<vec4f>(ray_words[rest + 1u]);
+    return mat3x2f(first.xy, first.zw, second.xy);
+}
+
 fn texcoord_of(corners: mat3x2f, weights: vec2f) -> vec2f {
     return corners * vec3f(1.0 - weights.x - weights.y, weights);
 }
 
 // How much of the colour storeys and windows leave.
 fn facade_share(at: vec2f, hit: Hit, rest: u32) -> f32 {
-    let first = bitcast<vec4f>(ray_words[rest]);
-    let second = bitcast<vec4f>(ray_words[rest + 1u]);
-    let corners = mat3x2f(first.xy, first.zw, second.xy);
+    let corners = texcoords_of(rest);
     let here = texcoord_of(corners, hit.weights);
     let right = texcoord_of(corners, weights_beside(at + vec2f(1.0, 0.0), hit));
     let below = texcoord_of(corners, weights_beside(at + vec2f(0.0, 1.0), hit));

@@ -15,7 +15,7 @@ fn note_hit(line: Ray, at: vec2f, hit: Hit) {
         return;
     }
     let kind = ray_words[hit.triangle + 1u].w;
-    let layer = min(kind >> TRIANGLE_LAYER_SHIFT, MOST_IN_PLANE);
+    let layer = min((kind >> TRIANGLE_LAYER_SHIFT) & TRIANGLE_LAYERS, MOST_IN_PLANE);
     let plane = select(ALONE, (MOST_IN_PLANE - layer) << PLANE_SHIFT, (kind & TRIANGLE_IN_PLANE) != 0u);
     let look = look_of(at, hit);
     keep_node(at, depth, code, plane, look.normal, select(0u, packed_texel(look.color), TEXTURED), 0u);

@@ -11,6 +11,7 @@ struct Followed {
     @location(0) code: vec2u,
     @location(1) color: vec4f,
     @location(2) own_depth: f32,
+    @location(3) hit: vec2u,    // triangle + 1, city: whose images are looked at then
     @builtin(frag_depth) depth: f32,
 }
 
@@ -27,6 +28,7 @@ fn follow(@builtin(position) clip: vec4f) -> Followed {
         followed.color = vec4f(look.color, look.facade);
         followed.depth = depth_of_distance(hit.t);
         followed.own_depth = followed.depth;
+        followed.hit = vec2u(hit.triangle + 1u, hit.city);
     }
     return followed;
 }

@@ -42,6 +42,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "delft-route"
     "delft-streets"
     "den-haag-district"
+    "den-haag-magnified"
     "den-haag-sphere"
     "den-haag-x-ray"
     "first-lens"
@@ -106,6 +107,8 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "vienna-roofs"
     "vienna-shapes"
     "visitor"
+    "wang-12"
+    "wang-3"
     "who-hides-the-church"
     "window"
 };

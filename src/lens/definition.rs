@@ -71,6 +71,11 @@ impl Lens {
         self.border.filter(|b| b.width > 0.0)
     }
 
+    /// Whether it is fixed to the camera: it acts in its view alone.
+    pub fn is_of_camera(&self) -> bool {
+        self.placement == Placement::Camera || self.ray().is_some()
+    }
+
     /// Whether some of its shapes are depth sprites of files.
     pub fn has_sprite_file(&self) -> bool {
         self.shapes.iter().any(|s| s.any(&|f| matches!(f, Region::Sprite { .. })))

@@ -216,6 +216,11 @@ impl RayPaths {
         self.images.is_empty() && self.planes.is_empty()
     }
 
+    /// Whether a fisheye looks in other directions than the view.
+    pub fn looks_around(&self) -> bool {
+        self.images.iter().any(|lens| matches!(lens.bend, ImageBend::Round(..)))
+    }
+
     /// The numbers of the lenses, ascending.
     pub fn lenses(&self) -> Vec<u32> {
         let images = self.images.iter().map(|lens| lens.lens);

@@ -8,7 +8,7 @@ use crate::{
         cells::Details,
         city::{Chunk, Section},
         city_facts::{CityFacts, ContentFacts, SectionFacts},
-        city_on_gpu::CityOnGpu,
+        city_on_gpu::{CityOnGpu, SectionImages},
         contents::{Contents, PlacedCity},
         cut::Cut,
         deformed::Deformed,
@@ -34,7 +34,7 @@ pub(super) struct Cities<'a> {
 pub(super) struct DrawnSection<'a> {
     pub city: &'a CityOnGpu,
     pub section: &'a Section,
-    pub image: Option<&'a wgpu::BindGroup>,
+    pub image: Option<&'a SectionImages>,
     /// Where they stand.
     pub chunks: &'a [Chunk],
     /// The content's number; `None`: the scene's own.

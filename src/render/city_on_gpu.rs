@@ -23,7 +23,7 @@ pub(super) struct CityOnGpu {
     /// Its edges, once something drew lines.
     pub edges: Option<EdgeBuffers>,
     /// One per section: its textures' group.
-    pub images: Vec<Option<wgpu::BindGroup>>,
+    pub images: Vec<Option<SectionImages>>,
     /// One per section: its corners on the host, once something deformed it.
     pub sources: Option<Vec<Source>>,
     /// Its edges on the host, once something deformed them.
@@ -41,7 +41,7 @@ impl CityOnGpu {
     }
 
     /// Sections whose surfaces and textures are those of another city.
-    pub fn beside(of: &Self, images: Vec<Option<wgpu::BindGroup>>, buffers: CityBuffers) -> Self {
+    pub fn beside(of: &Self, images: Vec<Option<SectionImages>>, buffers: CityBuffers) -> Self {
         Self { group: of.group.clone(), images, buffers, edges: None, sources: None, edge_sources: None }
     }
 
@@ -55,18 +55,30 @@ impl CityOnGpu {
 }
 
 /// What binds the textures of a section.
+#[derive(Clone, Debug)]
+pub(super) struct SectionImages {
+    /// Where it is drawn.
+    pub drawn: wgpu::BindGroup,
+    /// Where each pixel says which level it samples.
+    pub by_level: wgpu::BindGroup,
+}
+
+/// The textures of a section.
 pub(super) fn image_of(
     gpu: &Gpu,
     pipelines: &Pipelines,
     buffers: &CityBuffers,
     kind: SectionKind,
-) -> Option<wgpu::BindGroup> {
+) -> Option<SectionImages> {
     let images = kind.images()?;
-    let mut entries = Vec::new();
+    let (mut drawn, mut by_level) = (Vec::new(), Vec::new());
     for (binding, number) in (0..).step_by(2).zip([images.color, images.emission, images.normals]) {
-        let (view, sampler) = buffers.textures.get_or_white(number)?;
-        entries.push((binding, wgpu::BindingResource::TextureView(view)));
-        entries.push((binding + 1, wgpu::BindingResource::Sampler(sampler)));
+        let texture = buffers.textures.get_or_white(number)?;
+        for (entries, sampler) in [(&mut drawn, &texture.sampler), (&mut by_level, &texture.by_level)] {
+            entries.push((binding, wgpu::BindingResource::TextureView(&texture.view)));
+            entries.push((binding + 1, wgpu::BindingResource::Sampler(sampler)));
+        }
     }
-    Some(group(gpu, "images", &pipelines.layout(&IMAGES), &entries))
+    let made = |entries: &[(u32, wgpu::BindingResource)]| group(gpu, "images", &pipelines.layout(&IMAGES), entries);
+    Some(SectionImages { drawn: made(&drawn), by_level: made(&by_level) })
 }

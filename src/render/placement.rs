@@ -59,14 +59,15 @@ impl Eye {
     /// From a lens' own coordinates to the model's; `None` where what it is attached to is not there:
     /// [`crate::scene::check_against`] says so.
     pub(super) fn motion(&self, lens: &Lens, scene: &Scene, model: &CityModel) -> Option<Motion> {
-        Some(match anchor(&lens.placement, scene, model).ok()? {
-            Some(DVec3::ZERO) => Motion::NONE,
-            Some(translation) => Motion { rotation: DQuat::IDENTITY, translation },
-            None => {
-                let Basis { right, up, forward } = self.basis;
-                let world_from_camera = DMat3::from_cols(right, up, -forward);
-                Motion { rotation: DQuat::from_mat3(&world_from_camera).normalize(), translation: self.at }
-            }
+        if lens.is_of_camera() {
+            let Basis { right, up, forward } = self.basis;
+            let world_from_camera = DMat3::from_cols(right, up, -forward);
+            let rotation = DQuat::from_mat3(&world_from_camera).normalize();
+            return Some(Motion { rotation, translation: self.at });
+        }
+        Some(match anchor(&lens.placement, scene, model).ok()?? {
+            DVec3::ZERO => Motion::NONE,
+            translation => Motion { rotation: DQuat::IDENTITY, translation },
         })
     }
 }

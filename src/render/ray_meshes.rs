@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::{
+    city::NONE,
     geom::{Aabb, bvh::Bvh},
     gpu::{Gpu, GpuError},
     render::{
@@ -31,6 +32,9 @@ const FACADE: u32 = 2;
 const SMOOTH: u32 = 4;
 const PLACED: u32 = 8;
 const LAYER_SHIFT: u32 = 8;
+const SECTION_SHIFT: u32 = 16;
+/// Sections with images of a city, at most.
+const MOST_SECTIONS: usize = 0xffff;
 /// Boxes below each other, at most.
 const MOST_DEPTH: usize = 60;
 /// Cities that rays are followed through, at most.
@@ -79,6 +83,15 @@ pub(super) struct RayMeshes {
     standing: Vec<Standing>,
     /// Triangles of all of them.
     pub triangles: u64,
+    /// The images of what is drawn, and which city and section they are of.
+    pub images: Vec<(u32, RayImages)>,
+}
+
+/// The images of a section, and whether one says how much of its own light there is.
+#[derive(Clone, Debug)]
+pub(super) struct RayImages {
+    pub group: wgpu::BindGroup,
+    pub emits: bool,
 }
 
 /// A triangle on its way to the GPU.
@@ -100,7 +113,7 @@ impl RayMeshes {
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let advice = "a smaller city, or no lens that bends rays";
         let words = Room::new(gpu, "triangles of rays", wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST, advice)?;
-        Ok(Self { meshes: Vec::new(), words, begins: Vec::new(), standing: Vec::new(), triangles: 0 })
+        Ok(Self { meshes: Vec::new(), words, begins: Vec::new(), standing: Vec::new(), triangles: 0, images: Vec::new() })
     }
 
     /// Makes them those of what a frame draws; `true`: the buffer is another one now.
@@ -110,6 +123,7 @@ impl RayMeshes {
         let mut before = std::mem::take(&mut self.meshes);
         let (mut is_other, count_before) = (false, before.len());
         self.standing.clear();
+        self.images.clear();
         for group in &groups {
             let of = made_of(group);
             let known = self.meshes.iter().position(|mesh| mesh.of == of);
@@ -127,6 +141,7 @@ impl RayMeshes {
                     self.meshes.len() - 1
                 }
             };
+            self.images.extend(images_of(group, self.standing.len() as u32));
             self.standing.push(Standing { mesh, offset: group.offset });
         }
         if !is_other && self.meshes.len() == count_before && self.begins.len() == count_before {
@@ -227,6 +242,15 @@ fn groups_of<'a>(drawn: &[DrawnSection<'a>]) -> Vec<Group<'a>> {
     groups
 }
 
+/// The images of a city's sections, those of storeys and windows left out.
+fn images_of(group: &Group, city: u32) -> Vec<(u32, RayImages)> {
+    let of = |(number, (drawn, _)): (u32, &(DrawnSection, Vec<&Chunk>))| {
+        let images = drawn.section.kind.images().filter(|images| !images.facade)?;
+        Some((city << SECTION_SHIFT | number, RayImages { group: drawn.image?.by_level.clone(), emits: images.emission != NONE }))
+    };
+    (1..).zip(&group.parts).take(MOST_SECTIONS).filter_map(of).collect()
+}
+
 fn made_of(group: &Group) -> MadeOf {
     let runs = |chunks: &[&Chunk]| {
         let mut runs: Vec<Range<u32>> = Vec::new();
@@ -262,8 +286,8 @@ impl Mesh {
         let exponent = ((reach / MOST_STEPS).log2().ceil() as i32).max(FINEST);
         let step = 2.0_f64.powi(exponent);
         let mut triangles: Vec<Triangle> = Vec::new();
-        for (drawn, (source, planes), runs) in parts() {
-            let made = Made { drawn, source, planes, origin, step };
+        for (number, (drawn, (source, planes), runs)) in (1..).zip(parts()) {
+            let made = Made { drawn, number, source, planes, origin, step };
             let starts: Vec<u32> = runs.iter().flat_map(|run| run.clone().step_by(3)).collect();
             let own: Vec<Triangle> = starts.par_iter().map(|&start| made.triangle(start as usize)).collect();
             triangles.extend(own);
@@ -310,6 +334,8 @@ impl Mesh {
 /// What triangles of a section are made of.
 struct Made<'a> {
     drawn: &'a DrawnSection<'a>,
+    /// Its number among the city's, from 1.
+    number: u32,
     source: &'a Source,
     planes: &'a [layout::Plane],
     origin: DVec3,
@@ -319,7 +345,7 @@ struct Made<'a> {
 impl Made<'_> {
     /// The triangle whose indices begin there.
     fn triangle(&self, start: usize) -> Triangle {
-        let Self { drawn, source, planes, origin, step } = *self;
+        let Self { drawn, number, source, planes, origin, step } = *self;
         let indices = [0, 1, 2].map(|k| source.indices[start + k]);
         let grid = |place: DVec3| ((place - origin) / step).round().as_ivec3();
         let vertex = |i: u32| &source.vertices[i as usize];
@@ -338,7 +364,7 @@ impl Made<'_> {
             rest.push([a, b, c, 0]);
         }
         if let Some(images) = drawn.section.kind.images() {
-            kind |= PLACED | if images.facade { FACADE } else { 0 };
+            kind |= PLACED | if images.facade { FACADE } else { number.min(MOST_SECTIONS as u32) << SECTION_SHIFT };
             let [a, b, c] = indices.map(|i| source.texcoords.get(i as usize).copied().unwrap_or_default().map(f32::to_bits));
             rest.extend([[a[0], a[1], b[0], b[1]], [c[0], c[1], 0, 0]]);
         }

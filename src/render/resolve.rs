@@ -36,7 +36,7 @@ use crate::{
         sun_eye::MapSize,
         volume::LensVolume,
     },
-    scene::{Drawn, Scene, Sun, SunTime},
+    scene::{Drawn, Scene, Sun, SunTime, Technique, Transparency},
     shader::{Bends, MOST_SLOTS, MOST_VOLUMES},
     time::Moment,
     view::{Camera, CameraError, View},
@@ -154,9 +154,15 @@ impl Surroundings<'_> {
         check_counts(&operations, &volumes)?;
         let (own, moved) = (self.reach(), &deformations.moved);
         let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved)).union(moving.bounds);
-        let view = View::new(*camera, size, &all)?;
+        let mut view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
         let rays = self.rays(scene, &view)?;
+        refuse_with_rays(scene, &rays)?;
+        if rays.looks_around() && view.is_orthographic() {
+            // Its depths are distances from the eye.
+            let farthest = all.corners().map(|corner| corner.distance(camera.eye)).into_iter().fold(0.0, f64::max);
+            view.far_m = view.far_m.max(1.001 * farthest + 1.0);
+        }
         operations.bend_rays(Bends { images: rays.images.len() as u32, planes: rays.planes.len() as u32 });
         Ok(Resolved { view, volumes, solids, operations, contents, deformations, rays, suns: Vec::new() })
     }
@@ -451,6 +457,20 @@ fn add_members(operations: &mut Operations, volumes: &mut [LensVolume], models: 
                 leaf.place.first = operations.add_members(members, objects);
             }
         }
+    }
+}
+
+/// Refuses ways of drawing that know no bent rays.
+fn refuse_with_rays(scene: &Scene, rays: &RayPaths) -> Result<(), ResolveError> {
+    let refused = |key: &str, right: &str| {
+        let message = format!("[style] {key}: does not go with lenses that bend rays; \"{right}\" would be right");
+        Err(ResolveError::Scene(message))
+    };
+    match rays.is_empty() {
+        true => Ok(()),
+        false if scene.style.technique != Technique::Accumulate => refused("technique", "accumulate"),
+        false if scene.style.transparency != Transparency::Exact => refused("transparency", "exact"),
+        false => Ok(()),
     }
 }
 

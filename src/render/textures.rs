@@ -18,11 +18,11 @@ const LEAST_SIDE: u32 = 16;
 /// Textures by their number in the model.
 #[derive(Debug, Default)]
 pub struct Textures {
-    entries: Vec<Option<(wgpu::TextureView, wgpu::Sampler)>>,
+    entries: Vec<Option<SampledTexture>>,
     /// Which of them have texels that are not opaque.
     translucent: Vec<bool>,
     /// One white texel, where there is some texture, or what is drawn as if it had one.
-    white: Option<(wgpu::TextureView, wgpu::Sampler)>,
+    white: Option<SampledTexture>,
     bytes: u64,
 }
 
@@ -61,7 +61,7 @@ impl Textures {
             }
         }
         let before = gpu.allocated_bytes();
-        let mut entries: Vec<Option<(wgpu::TextureView, wgpu::Sampler)>> = Vec::new();
+        let mut entries: Vec<Option<SampledTexture>> = Vec::new();
         entries.resize_with(used.len(), || None);
         let mut translucent = vec![false; used.len()];
         let mut wanted: Vec<(usize, [u32; 2])> = Vec::new();
@@ -118,12 +118,12 @@ impl Textures {
     }
 
     /// A texture and how it is sampled.
-    pub fn get(&self, number: u32) -> Option<&(wgpu::TextureView, wgpu::Sampler)> {
+    pub fn get(&self, number: u32) -> Option<&SampledTexture> {
         self.entries.get(number as usize)?.as_ref()
     }
 
     /// The same; of what is not there one white texel, where there is some other texture.
-    pub fn get_or_white(&self, number: u32) -> Option<&(wgpu::TextureView, wgpu::Sampler)> {
+    pub fn get_or_white(&self, number: u32) -> Option<&SampledTexture> {
         self.get(number).or(self.white.as_ref())
     }
 
@@ -131,6 +131,17 @@ impl Textures {
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
+}
+
+/// A texture, and how it is sampled.
+#[derive(Debug)]
+pub struct SampledTexture {
+    /// The texture.
+    pub view: wgpu::TextureView,
+    /// Where four pixels together tell how far its coordinates go.
+    pub sampler: wgpu::Sampler,
+    /// Where each says the level: Mesa's software driver asks all four all the same where a sampler is anisotropic.
+    pub by_level: wgpu::Sampler,
 }
 
 /// Bytes of images of these sizes with their levels, where no side is longer than `side`.
@@ -162,12 +173,13 @@ fn groups(wanted: &[(usize, [u32; 2])], side: u32) -> impl Iterator<Item = &[(us
     })
 }
 
-fn white(gpu: &Gpu) -> (wgpu::TextureView, wgpu::Sampler) {
+fn white(gpu: &Gpu) -> SampledTexture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = gpu.texture("no texture", [1, 1, 1], 1, wgpu::TextureFormat::Rgba8Unorm, usage);
     gpu.write_texture_level(&texture, 0, &[u8::MAX; 4]);
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    (view, gpu.device.create_sampler(&wgpu::SamplerDescriptor { label: Some("no texture"), ..Default::default() }))
+    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor { label: Some("no texture"), ..Default::default() });
+    SampledTexture { view, by_level: sampler.clone(), sampler }
 }
 
 fn upload(
@@ -175,7 +187,7 @@ fn upload(
     pixels: &texture::Pixels,
     declared: &Texture,
     format: wgpu::TextureFormat,
-) -> (wgpu::TextureView, wgpu::Sampler) {
+) -> SampledTexture {
     let size = [pixels.width, pixels.height, 1];
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = gpu.texture("city texture", size, pixels.levels.len() as u32, format, usage);
@@ -187,17 +199,20 @@ fn upload(
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
         Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
     };
-    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+    let sampler = |anisotropy_clamp: u16| {
+        gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("city texture"),
         address_mode_u: mode(declared.wrap[0]),
         address_mode_v: mode(declared.wrap[1]),
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        anisotropy_clamp: 8,
+        anisotropy_clamp,
         ..Default::default()
-    });
-    (texture.create_view(&wgpu::TextureViewDescriptor::default()), sampler)
+    })
+    };
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    SampledTexture { view, sampler: sampler(8), by_level: sampler(1) }
 }
 
 #[cfg(test)]

@@ -30,6 +30,16 @@ pub(super) const LEFT_OUT: &str = "    if is_bent(at) {
     }
 ";
 
+/// What rays are followed through, in the last group.
+pub(super) const LAST_GROUP: &str = "@group(3) @binding(0) var<uniform> ray_cities: RayCities;
+@group(3) @binding(1) var<storage, read> ray_words: array<vec4u>;
+";
+
+/// The same beside the surfaces.
+pub(super) const FIRST_GROUP: &str = "@group(1) @binding(5) var<uniform> ray_cities: RayCities;
+@group(1) @binding(6) var<storage, read> ray_words: array<vec4u>;
+";
+
 const ALL_IS_THERE: &str = "
 fn is_there(line: Ray, at: vec2f, hit: Hit) -> bool {
     return true;

@@ -65,6 +65,7 @@ files! {
     VIEW_UNIFORM = "lib/view-uniform.wgsl";
     BENT_RAYS = "lib/bent-rays.wgsl";
     BENT_EDGES = "lib/bent-edges.wgsl";
+    RAY_IMAGES = "pass/ray-images.wgsl";
     RAYS = "pass/rays.wgsl";
     RAY_WALK = "lib/ray-walk.wgsl";
     RAY_LAYERS = "pass/ray-layers.wgsl";

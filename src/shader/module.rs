@@ -15,7 +15,7 @@ use crate::{
         library::{
             AMBIENT_OCCLUSION, BARE, BENT_EDGES, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM,
             DEPTH_CODE, FACADE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS,
-            HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, RAY_LAYERS, RAY_WALK, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
+            HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, RAY_IMAGES, RAY_LAYERS, RAY_WALK, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
             SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS,
             STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
@@ -48,6 +48,8 @@ pub enum Module {
     CombinedSprite(Vec<Form>),
     /// Bent rays, followed through the city, what is hidden, and how many lenses bend them.
     Rays(Option<Program>, Bends),
+    /// Images of what they meet.
+    RayImages(Bends),
     /// Deferred shading, and what the lenses make of it.
     Shade(Program),
     /// Edges as lines, and what lenses make of them.
@@ -174,12 +176,19 @@ impl Module {
             }
             Self::Rays(program, _) => {
                 let asked = program.as_ref().map(|p| (hidden(p, Eye::Rays), p.has().has_cities()));
-                text.fill("handlers", followed::source(asked)).fill("met", followed::FIRST)
+                text.fill("handlers", followed::source(asked)).fill("met", followed::FIRST).fill("bindings", followed::LAST_GROUP)
             }
+            Self::RayImages(_) => text
+                .fill("handlers", followed::source(None))
+                .fill("met", followed::FIRST)
+                .fill("bindings", followed::FIRST_GROUP),
             Self::RayLayers(program) => {
                 let (hidden, has_cities) = (hidden(program, Eye::RayLayers), program.has().has_cities());
                 let handlers = hidden + followed::cities(has_cities);
-                text.fill("handlers", handlers).fill("met", followed::ALL).leave("elsewhere")
+                text.fill("handlers", handlers)
+                    .fill("met", followed::ALL)
+                    .fill("bindings", followed::LAST_GROUP)
+                    .leave("elsewhere")
             }
             Self::Shadow(Some(program)) => text.fill("handlers", hidden(program, Eye::Sun)),
             Self::Filter(effect) => {
@@ -198,7 +207,7 @@ impl Module {
             Self::Shade(program) | Self::Composite(program) | Self::Layers(program, _) | Self::RayLayers(program) | Self::Lines(program) => {
                 program.has().bends
             }
-            Self::Rays(_, bends) => *bends,
+            Self::Rays(_, bends) | Self::RayImages(bends) => *bends,
             _ => Bends::default(),
         }
     }
@@ -216,6 +225,7 @@ impl Module {
     fn files(&self, handlers: &[EffectDefinition]) -> Vec<File> {
         let of: &[File] = match self {
             Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, GEOMETRY],
+            Self::RayImages(_) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAY_IMAGES],
             Self::Rays(None, _) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAYS],
             Self::Rays(Some(program), _) => return files::of_city(program, &[FACADE, RAY_WALK, RAYS]),
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, FACADE, GEOMETRY]),

@@ -284,9 +284,10 @@ fn validate_text(name: &str, source: &str) {
     let functions = parsed.functions.iter().map(|(_, function)| function);
     for function in functions.chain(parsed.entry_points.iter().map(|entry| &entry.function)) {
         if let Some(span) = branch_on_uniforms(&parsed, function, &function.body) {
-            let line = span.location(source).line_number;
+            let line = span.location(source).line_number as usize;
+            let text = source.lines().nth(line - 1).unwrap_or_default().trim();
             panic!(
-                "{name}, line {line}: a branch on nothing but uniforms, for which Mesa's software driver compiles anew in each frame; use select()"
+                "{name}, line {line} ({text}): a branch on nothing but uniforms, for which Mesa's software driver compiles anew in each frame; use select()"
             );
         }
     }

@@ -22,6 +22,7 @@ use veduta::{
     view::View,
 };
 
+use crate::case_27_bent_rays::{Bent, Piece, path};
 use crate::studio::{self, ALL, bits, faces, is_thorough, of_scene, random_scene::Random};
 
 /// Of pictures in an ordinary run; a thorough one asks each program for more.
@@ -126,6 +127,8 @@ struct Hit {
     t: f64,
     rest: DVec3,
     face: usize,
+    /// The line of sight that it lies on.
+    ray: (DVec3, DVec3),
 }
 
 /// A lens of a scene, as text and as the reference has it.
@@ -314,6 +317,8 @@ struct Seen {
 struct Reference {
     faces: Vec<Face>,
     lenses: Vec<Slow>,
+    /// What bends rays, on top of all others.
+    bent: Option<Bent>,
     /// How far shown places may be from where they should be, metres by metre of distance.
     slack: f64,
 }
@@ -348,7 +353,20 @@ impl Reference {
         }
     }
 
-    fn seen(&self, hits: &mut [Hit], ray: (DVec3, DVec3)) -> Seen {
+    /// The lines that the ray through a place of the picture lies on, and from where to where.
+    fn lines(&self, view: &View, pixel: DVec2) -> Vec<Piece> {
+        let Some(bent) = &self.bent else {
+            let ray = view.ray(pixel);
+            return vec![([0.0, f64::INFINITY], ray.origin, ray.direction)];
+        };
+        let of_picture = pixel / DVec2::from(view.size.map(f64::from));
+        let place = DVec2::new(2.0 * of_picture.x - 1.0, 1.0 - 2.0 * of_picture.y) * view.half_extent();
+        let to_world = view.basis.view_from_world().transpose();
+        let placed = |(range, origin, direction): Piece| (range, view.camera.eye + to_world * origin, to_world * direction);
+        path(bent, place, view.is_orthographic()).into_iter().map(placed).collect()
+    }
+
+    fn seen(&self, hits: &mut [Hit]) -> Seen {
         hits.sort_by(|a, b| a.t.total_cmp(&b.t));
         let mut is_near_border = false;
         let mut first: Option<Seen> = None;
@@ -361,7 +379,7 @@ impl Reference {
             let (mut shown, mut below, mut is_hidden) = (1_u32, 0_u32, false);
             let mut classes = Vec::new();
             for lens in &self.lenses {
-                let (class, room) = self.class(lens, face.object, hit, ray);
+                let (class, room) = self.class(lens, face.object, hit, hit.ray);
                 is_near_border |= room < band;
                 classes.push(class);
                 match lens.act {
@@ -399,14 +417,13 @@ impl Reference {
     fn picture(&self, view: &View, beside: f64) -> Vec<[Seen; 5]> {
         let [w, h] = size();
         let offsets = [[0.0, 0.0], [-beside, -beside], [beside, -beside], [-beside, beside], [beside, beside]];
-        let ray_of = |x: u32, y: u32, [i, j]: [f64; 2]| {
-            let ray = view.ray(DVec2::new(f64::from(x) + 0.5 + i, f64::from(y) + 0.5 + j));
-            (ray.origin, ray.direction)
-        };
+        let lines_of = |x: u32, y: u32, [i, j]: [f64; 2]| self.lines(view, DVec2::new(f64::from(x) + 0.5 + i, f64::from(y) + 0.5 + j));
         // The pixels that a face may be in, along x and y.
         let spans = |face: &Face| {
             // What crosses the eye's plane may be anywhere.
             let corners: Option<Vec<DVec3>> = face.shown.iter().map(|p| view.pixel(*p)).collect();
+            // And so may be what bent rays come to.
+            let corners = corners.filter(|_| self.bent.is_none());
             [(0, w), (1, h)].map(|(axis, side)| match &corners {
                 None => 0..side,
                 Some(corners) => {
@@ -419,21 +436,25 @@ impl Reference {
         };
         let spans: Vec<_> = self.faces.iter().map(spans).collect();
         let row = |y: u32| {
-            let rays: Vec<_> = (0..w).map(|x| offsets.map(|offset| ray_of(x, y, offset))).collect();
+            let rays: Vec<_> = (0..w).map(|x| offsets.map(|offset| lines_of(x, y, offset))).collect();
             let mut hits: Vec<[Vec<Hit>; 5]> = (0..w).map(|_| Default::default()).collect();
             for (number, [across, _]) in spans.iter().enumerate().filter(|(_, [_, down])| down.contains(&y)) {
                 let face = &self.faces[number];
                 for x in across.clone() {
-                    for (k, (origin, direction)) in rays[x as usize].into_iter().enumerate() {
-                        let Some((t, u, v)) = hit(origin, direction, &face.shown) else { continue };
+                    let lines = rays[x as usize].iter().enumerate();
+                    for (k, ([begin, end], origin, direction)) in lines.flat_map(|(k, all)| all.iter().map(move |l| (k, l))) {
+                        let Some((t, u, v)) = hit(*origin, *direction, &face.shown) else { continue };
+                        if t < *begin || t > *end {
+                            continue;
+                        }
                         let [a, b, c] = face.rest;
                         let rest = a + (b - a) * u + (c - a) * v;
-                        hits[x as usize][k].push(Hit { t, rest, face: number });
+                        hits[x as usize][k].push(Hit { t, rest, face: number, ray: (*origin, *direction) });
                     }
                 }
             }
-            let one = |(rays, mut of): ([_; 5], [Vec<Hit>; 5])| std::array::from_fn(|k| self.seen(&mut of[k], rays[k]));
-            rays.into_iter().zip(hits).map(one).collect::<Vec<_>>()
+            let one = |mut of: [Vec<Hit>; 5]| std::array::from_fn(|k| self.seen(&mut of[k]));
+            hits.into_iter().map(one).collect::<Vec<_>>()
         };
         (0..h).into_par_iter().flat_map_iter(row).collect()
     }
@@ -465,8 +486,9 @@ fn view_of(scene: &Scene) -> View {
 }
 
 /// Draws a scene and holds it to the reference. How many pixels were compared, and how many of them show what a lens does.
-fn compare(studio: &mut Studio, kinds: &[usize], seed: u64) -> Result<[u64; 2], String> {
-    let (text, made) = scene_of(kinds, seed);
+fn compare(studio: &mut Studio, kinds: &[usize], seed: u64, bends: &str) -> Result<[u64; 2], String> {
+    let (mut text, made) = scene_of(kinds, seed);
+    text += bends;
     let scene = parsed(&text);
     let view = view_of(&scene);
     let backend = if seed.is_multiple_of(2) { Backend::Specialised } else { Backend::Uber };
@@ -477,7 +499,8 @@ fn compare(studio: &mut Studio, kinds: &[usize], seed: u64) -> Result<[u64; 2], 
     let reference = reference_of(studio, &scene, made, &deformers);
     let beside = if moves { BESIDE_DEFORMED_PX } else { BESIDE_PX };
     let wanted = reference.picture(&view, beside);
-    held(&drawn, &wanted, scene.lenses.len(), reference.slack)
+    // What bends rays has a mask of its own, which other tests look at.
+    held(&drawn, &wanted, reference.lenses.len(), reference.slack)
         .map_err(|wrong| format!("kinds {kinds:?}, seed {seed}: {wrong}\n{text}"))
 }
 
@@ -511,7 +534,8 @@ fn reference_of(studio: &Studio, scene: &Scene, made: Vec<Made>, deformers: &Def
     }
     // A quarter of a pixel, and twice that between edges.
     let pixel = view_of(scene).pixel_m(1.0);
-    Reference { faces: all, lenses, slack: if deformers.0.is_empty() { 0.0 } else { 0.75 * pixel } }
+    let bent = scene.lenses.iter().find_map(Lens::ray).map(|ray| Bent::new(ray, &view_of(scene)));
+    Reference { faces: all, lenses, bent, slack: if deformers.0.is_empty() { 0.0 } else { 0.75 * pixel } }
 }
 
 /// The triangles of a content where it stands before deformations.
@@ -579,7 +603,7 @@ fn lenses_of_every_two_and_three_kinds_show_what_a_slow_renderer_says() {
     let pairs: Vec<Vec<usize>> = (0..KINDS).flat_map(|a| (0..KINDS).map(move |b| vec![a, b])).collect();
     let mut dice = Random::new(24, 0);
     let (mut total, mut acted, mut wrong) = (0, 0, Vec::new());
-    let mut run = |kinds: &[usize], seed: u64| match compare(&mut studio, kinds, seed) {
+    let mut run = |kinds: &[usize], seed: u64| match compare(&mut studio, kinds, seed, "") {
         Ok([compared, own]) => {
             total += compared;
             acted += own;
@@ -608,4 +632,34 @@ fn lenses_of_every_two_and_three_kinds_show_what_a_slow_renderer_says() {
     assert!(scenes == 0, "{scenes} scenes differ:\n{}", wrong.join("\n"));
     println!("{total} pixels compared, {acted} of them in lenses");
     assert!(acted * 12 > total && total > 20_000, "{acted} of {total} pixels are in lenses");
+}
+
+/// Lenses that bend rays, over all of the picture's height.
+const BENDING: [&str; 3] = [
+    "kind = \"magnifier\"\nray = { radius = 0.5, magnification = 2.2, distance = 35, at = 30, border = 0.4 }",
+    "kind = \"fisheye\"\nray = { angle_deg = 140 }",
+    "kind = \"sampling\"\nray = { radius = 0.5, magnification = 2.5, outline = \"square\" }",
+];
+
+/// Of an ordinary run, every so-manieth of the pairs.
+const PAIRS_TRIED: usize = 7;
+
+#[test]
+fn lenses_of_every_kind_seen_through_those_that_bend_rays_show_what_a_slow_renderer_says() {
+    let mut studio = of_scene(&parsed("veduta = 1\n[city]\nfiles = [\"builtin:town\"]\nground = false\n"));
+    let (mut total, mut acted, mut wrong, mut scenes) = (0, 0, Vec::new(), 0);
+    let pairs = (0..KINDS).flat_map(|kind| BENDING.map(|bending| (kind, bending))).enumerate();
+    for (i, (kind, bending)) in pairs.filter(|(i, _)| studio::is_tried(*i, PAIRS_TRIED)) {
+        scenes += 1;
+        let bends = format!("[[lens]]\nname = \"bends\"\nbody = \"none\"\n{bending}\n");
+        match compare(&mut studio, &[kind], 500 + i as u64, &bends) {
+            Ok([compared, own]) => (total, acted) = (total + compared, acted + own),
+            Err(message) => wrong.push(message),
+        }
+    }
+    println!("{scenes} scenes, {total} pixels compared, {acted} of them in lenses");
+    let count = wrong.len();
+    wrong.truncate(4);
+    assert!(count == 0, "{count} of {scenes} scenes differ:\n{}", wrong.join("\n"));
+    assert!(acted * 20 > total && total > 2_000 * scenes, "{acted} of {total} pixels are in lenses");
 }

@@ -40,6 +40,7 @@ mod case_21_zero_size_window;
 mod case_22_points_of_interest;
 mod case_23_jitter;
 mod case_24_combinations;
+mod case_27_bent_rays;
 mod deformed;
 mod large_cities;
 mod lenses;

@@ -6,7 +6,7 @@ use crate::{
     city::{CityModel, ObjectClass},
     geom::{Aabb, Shape, Sphere},
     lens::{
-        BestView, Class, EffectUse, Lens, LensBody, LensKind, Parameter, Placement, Region,
+        BestView, Class, EffectUse, Lens, LensBody, LensKind, Parameter, Region,
         best_view::{LocalView, MapMode},
         chosen::Choice,
         epoch::linked,
@@ -226,7 +226,7 @@ fn seen_through(scene: &Scene, shown: &BestView) -> Scene {
         let is_in = match &shown.lenses {
             Some(names) => names.contains(&lens.name),
             // What is fixed to a camera, and what is flat, acts in its own view alone.
-            None => !lens.kind.has_overlay() && lens.placement != Placement::Camera && !is_flat(lens),
+            None => !lens.kind.has_overlay() && !lens.is_of_camera() && !is_flat(lens),
         };
         lens.enabled &= is_in;
     }

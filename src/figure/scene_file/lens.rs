@@ -80,7 +80,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             "What its shapes are fixed to: the `scene`, or the `camera`, with which they move and in whose view alone they act; see Placement.",
             "\"camera\"",
         ),
-        |lens, _| (lens.placement == Placement::Camera && lens.ray().is_none()).then(|| "camera".into()),
+        |lens, _| (lens.placement == Placement::Camera).then(|| "camera".into()),
     ),
     Row::<Lens>::joint(
         key(
@@ -544,7 +544,6 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Lens {
     }
     if let (Some(read), Some(own)) = (ray::read(reader, fields, &lens.kind.clone()), lens.kind.ray_mut()) {
         *own = read;
-        lens.placement = Placement::Camera;
     }
     let has_overlay = lens.kind.has_overlay();
     let is_occlusion = lens.rendering().is_some();

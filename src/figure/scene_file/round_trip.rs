@@ -18,7 +18,8 @@ use crate::{
         best_view::{Depiction, LocalView, Look, MapMode},
         chosen::Choice,
         deform::{BORDER, ControlProfile, Step},
-        kind::{Deformation, Occlusion, TimeLens},
+        kind::{Deformation, FisheyeLens, Magnifier, Occlusion, SamplingLens, TimeLens},
+        ray::{Bend, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate},
         rendering::{Case, ROWS, When},
         sprite::{Format, Mapping},
     },
@@ -362,6 +363,41 @@ fn deforms() -> impl Strategy<Value = Deform> {
         .prop_map(|(steps, control, strength)| Deform { steps, control, strength })
 }
 
+/// Lenses that bend rays.
+fn ray_lenses() -> impl Strategy<Value = LensKind> {
+    let angle = |tenths: u32| (f64::from(tenths) / 10.0).to_radians();
+    let magnify = (0.1..1e3f64, prop::option::of(1e-3..1e4f64), prop::option::of(1e-3..1e4f64), 0.0..=1.0f64).prop_map(
+        |(magnification, at, distance, border)| Bend::Magnify(Magnify { magnification, at, distance, border }),
+    );
+    let points = prop::collection::vec((0.01..0.3f64, 0.01..1e3f64), 0..3).prop_map(|steps| {
+        let mut x = 0.0;
+        let mut inner: Vec<DVec2> = steps.into_iter().map(|(step, rate)| { x += step; DVec2::new(x, rate) }).collect();
+        inner.insert(0, DVec2::new(0.0, 2.0));
+        inner.push(DVec2::new(1.0, 1.5));
+        SamplingRate::Points(inner)
+    });
+    let rate = prop_oneof![(0.1..1e3f64).prop_map(SamplingRate::Cubic), points];
+    let sample = rate.prop_map(|rate| Bend::Sample(Sampling { rate }));
+    let fisheye = (10..1800u32, any::<bool>()).prop_map(move |(tenths, is_angular)| {
+        let (angle, projection) = match is_angular {
+            true => (angle(2 * tenths), FisheyeProjection::Angular),
+            false => (angle(tenths), FisheyeProjection::Hemispherical),
+        };
+        Bend::Fisheye(Fisheye { angle, projection })
+    });
+    let bend = prop_oneof![magnify, sample, fisheye];
+    let place = (prop::array::uniform2(0.0..=1.0f64), 0.001..4.0f64, any::<bool>(), any::<bool>());
+    (bend, place).prop_map(|(bend, (center, radius, is_square, grid))| {
+        let outline = if is_square { RayOutline::Square } else { RayOutline::Circle };
+        let ray = RayLens { center: center.into(), radius, outline, grid, ..RayLens::new(bend) };
+        match &ray.bend {
+            Bend::Magnify(_) => Magnifier { ray }.into(),
+            Bend::Sample(_) => SamplingLens { ray }.into(),
+            Bend::Fisheye(_) => FisheyeLens { ray }.into(),
+        }
+    })
+}
+
 /// An aggregate of years, and of so many days later, with weights.
 fn several(all: Vec<(bool, i64, u8)>) -> Handled {
     let at = |(is_later, count, _): &(bool, i64, u8)| match is_later {
@@ -410,7 +446,8 @@ prop_compose! {
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
         section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>(), at_rest in any::<bool>(),
-        deform in prop::option::weighted(0.3, deforms()), time in operators()) -> Lens {
+        deform in prop::option::weighted(0.3, deforms()), time in operators(), bends in prop::option::weighted(0.3, ray_lenses())) -> Lens {
+        let (mut placement, mut at_rest) = (placement, at_rest);
         // A soft border needs shapes that have a distance; what shapes of files have, `sprite` does not give.
         let is_saved = |s: &Region| matches!(s, Region::Sprite { .. });
         let (sprite, border) = if shapes.iter().any(|s| s.any(&is_saved)) { (None, None) } else { ends };
@@ -425,6 +462,9 @@ prop_compose! {
         if let Some(deform) = deform.filter(|_| matches!(kind, LensKind::Color(_))) {
             shapes = if deform.is_of_objects() { vec![] } else { shapes };
             kind = Deformation::from(deform).into();
+        }
+        if let Some(bends) = bends.filter(|_| matches!(kind, LensKind::Color(_)) && sprite.is_none() && content.is_none()) {
+            (kind, shapes, placement, at_rest) = (bends, vec![], Placement::World, false);
         }
         if !time.is_empty() && matches!(kind, LensKind::Color(_)) {
             kind = TimeLens::default().into();

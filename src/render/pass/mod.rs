@@ -15,7 +15,8 @@
 //! ends of lenses          where rays leave lenses that ask for sections, and enter them,
 //! count sections          how many closed shells are laid open there,
 //! sections                and the surface that closes them
-//! bent rays               what lenses that bend rays show, in place of what was drawn there
+//! bent rays               what lenses that bend rays show, in place of what was drawn there,
+//! images of rays          and its images, where it has some
 //! clear lens masks        where AOVs or statistics ask for them
 //! layers                  every fragment that is seen through and not behind what is opaque, into the list of its pixel
 //! count layers            where opacity rules ask how many layers the picture has

@@ -197,7 +197,7 @@ pub fn set_section(frame: &FrameContext, pass: &mut wgpu::RenderPass, drawn: &Dr
         }
     }
     if let Some(image) = drawn.image {
-        pass.set_bind_group(3, image, &[]);
+        pass.set_bind_group(3, &image.drawn, &[]);
     }
 }
 

@@ -6,6 +6,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         bent,
+        city_facts::SectionFacts,
         eye::PictureTile,
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
@@ -15,12 +16,13 @@ use crate::{
         programs::Programs,
         ray_meshes::RayMeshes,
         resource::{
-            bindings::{GroupLayout, STORAGE, UNIFORM, group, whole},
-            formats::{COLORS, OWN_DEPTH, codes},
+            bindings::{DEPTHS, GroupLayout, NUMBERS, STORAGE, UNIFORM, all_of, group, whole},
+            formats::{COLORS, EMISSIONS, OWN_DEPTH, RAY_HITS, codes},
             key::{Draw, Parts, PipelineKey, Stage, depth_test, flag, words},
-            layouts::{CUT_CITY, LENSES, VIEW},
+            layouts::{CUT_CITY, IMAGES, LENSES, VIEW},
             recording::{Counted, DrawnPass, Recording, Shaded, kept, kept_depth, scissor},
             synced::Synced,
+            targets::Needs,
         },
     },
     scene::Technique,
@@ -43,6 +45,8 @@ struct RayKey {
     smooth: bool,
     /// Whether depths are, for the AOV.
     measured: bool,
+    /// Whether triangles are, whose images are looked at.
+    imaged: bool,
 }
 
 impl RayKey {
@@ -53,13 +57,14 @@ impl RayKey {
             colored: plan.colored,
             smooth: plan.smooth,
             measured: plan.input.measured,
+            imaged: has_images(plan),
         }
     }
 }
 
 impl PipelineKey for RayKey {
     fn name(&self) -> String {
-        let flags = words(&[(self.colored, "colored"), (self.smooth, "smooth"), (self.measured, "measured")]);
+        let flags = words(&[(self.colored, "colored"), (self.smooth, "smooth"), (self.measured, "measured"), (self.imaged, "imaged")]);
         format!("{}{flags}", Module::Rays(self.hidden.clone(), self.bends).name())
     }
 
@@ -73,11 +78,53 @@ impl PipelineKey for RayKey {
                     Some(codes(self.smooth).into()),
                     self.colored.then(|| COLORS.into()),
                     self.measured.then(|| OWN_DEPTH.into()),
-                    None,
+                    self.imaged.then(|| RAY_HITS.into()),
                     None,
                 ]),
                 depth: Some(depth_test(wgpu::CompareFunction::Always, true)),
                 ..Draw::new("vertex", Some("follow"))
+            }),
+        }
+    }
+}
+
+/// Group 1 of images: surfaces, cities, triangles, which of them pixels show, and how far these are.
+static IMAGES_OF_RAYS: GroupLayout = GroupLayout {
+    label: "images of rays",
+    entries: &[
+        (0, S::FRAGMENT, NUMBERS),
+        (5, S::FRAGMENT, UNIFORM),
+        (6, S::FRAGMENT, STORAGE),
+        (7, S::FRAGMENT, NUMBERS),
+        (8, S::FRAGMENT, DEPTHS),
+    ],
+};
+
+/// Images of what rays meet.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+struct RayImageKey {
+    bends: Bends,
+    /// Whether the images say how much light of their own faces have.
+    emits: bool,
+    /// Whether the picture has shares of own light.
+    texels_emit: bool,
+}
+
+impl PipelineKey for RayImageKey {
+    fn name(&self) -> String {
+        let flags = words(&[(self.emits, "of light"), (self.texels_emit, "of texels")]);
+        format!("{}{flags}", Module::RayImages(self.bends).name())
+    }
+
+    fn parts(&self, _: wgpu::TextureFormat) -> Parts {
+        let targets = [Some(COLORS), self.texels_emit.then_some(EMISSIONS)];
+        Parts {
+            module: Module::RayImages(self.bends),
+            groups: vec![Some(&VIEW), Some(&IMAGES_OF_RAYS), Some(&LENSES), Some(&IMAGES)],
+            constants: vec![("IMAGE_EMITS", flag(self.emits))],
+            stage: Stage::Draw(Draw {
+                targets: targets.into_iter().flatten().map(|format| Some(format.into())).collect(),
+                ..Draw::new("vertex", Some("imaged"))
             }),
         }
     }
@@ -115,11 +162,67 @@ fn group_of(stage: &Preparing, meshes: &RayMeshes, cities: &Synced) -> wgpu::Bin
     group(stage.gpu, RAYS.label, &stage.pipelines.layout(&RAYS), &entries)
 }
 
+/// Whether some of what is drawn has images, storeys and windows left out.
+fn has_images(plan: &FramePlan) -> bool {
+    let is_image = |section: &SectionFacts| section.kind.images().is_some_and(|images| !images.facade);
+    !plan.is_clay() && plan.sections.iter().any(is_image)
+}
+
+impl RayImageKey {
+    fn new(plan: &FramePlan, emits: bool) -> Self {
+        Self { bends: plan.input.operations.bends, emits, texels_emit: plan.texels_emit }
+    }
+}
+
+impl Kept {
+    /// Looks at the images of what rays meet, section by section.
+    fn draw_images(&self, parts: &[PictureTile], frame: &FrameContext, recording: &mut Recording) {
+        let FrameContext { gpu, pipelines, cities, targets, groups, plan, .. } = *frame;
+        let entries = [
+            (0, wgpu::BindingResource::TextureView(cities.surfaces())),
+            (5, whole(self.cities.buffer())),
+            (6, whole(self.meshes.words.buffer())),
+            (7, all_of(&targets.ray_hits)),
+            (8, all_of(&targets.depth)),
+        ];
+        let own = group(gpu, IMAGES_OF_RAYS.label, &pipelines.layout(&IMAGES_OF_RAYS), &entries);
+        let targeted = [Some(&targets.colors), plan.texels_emit.then_some(&targets.emissions)];
+        let colors: Vec<_> = targeted.into_iter().flatten().map(|target| Some(kept(&target.view))).collect();
+        let lenses = plan.input.rays.lenses();
+        let pass = DrawnPass {
+            name: "images of rays",
+            view: "main",
+            lenses: &lenses,
+            shaded: Shaded::Counted,
+            colors: &colors,
+            depth: None,
+        };
+        recording.draw(pass, |pass| {
+            pass.set_bind_group(0, &groups.view, &[]);
+            pass.set_bind_group(1, &own, &[]);
+            pass.set_bind_group(2, &groups.lenses, &[]);
+            for (section, images) in &self.meshes.images {
+                pass.set_pipeline(pipelines.get(&RayImageKey::new(plan, images.emits)));
+                pass.set_bind_group(3, &images.group, &[]);
+                for part in parts {
+                    scissor(pass, *part);
+                    pass.draw(0..3, *section..section + 1);
+                }
+            }
+            let draws = (parts.len() * self.meshes.images.len()) as u32;
+            Counted { draws, triangles: draws.into() }
+        });
+    }
+}
+
 impl Pass for Rays {
     /// Where in the picture.
     type Input<'a> = Vec<PictureTile>;
 
-    const LIST: &'static [Line] = &[("bent rays", "what lenses that bend rays show, in place of what was drawn there")];
+    const LIST: &'static [Line] = &[
+        ("bent rays", "what lenses that bend rays show, in place of what was drawn there,"),
+        ("images of rays", "and its images, where it has some"),
+    ];
 
     fn new(_: &Gpu) -> Result<Self, GpuError> {
         Ok(Self(None))
@@ -132,9 +235,17 @@ impl Pass for Rays {
         is_asked.then(|| parts.iter().map(|part| part.rectangle()).collect())
     }
 
+    fn add_needs(_: &Vec<PictureTile>, plan: &FramePlan, needs: &mut Needs) {
+        needs.ray_hits |= has_images(plan);
+    }
+
     fn add_keys(&self, input: Option<&Vec<PictureTile>>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
         if input.is_some() {
             keys.add_programs(24, [RayKey::new(plan, programs)]);
+            if has_images(plan) {
+                let emits = [false, true].into_iter().filter(|emits| !emits || plan.texels_emit);
+                keys.add(24, emits.map(|emits| RayImageKey::new(plan, emits)));
+            }
         }
     }
 
@@ -168,7 +279,7 @@ impl Pass for Rays {
             Some(&targets.codes),
             plan.colored.then_some(&targets.colors),
             plan.input.measured.then_some(&targets.own_depth),
-            None,
+            has_images(plan).then_some(&targets.ray_hits),
             None,
         ]);
         let colors: Vec<_> = targeted.into_iter().map(|target| target.map(|target| self::kept(&target.view))).collect();
@@ -193,6 +304,9 @@ impl Pass for Rays {
             }
             Counted { draws: parts.len() as u32, triangles: parts.len() as u64 }
         });
+        if has_images(plan) && !kept.meshes.images.is_empty() {
+            kept.draw_images(parts, frame, recording);
+        }
         Ok(())
     }
 }

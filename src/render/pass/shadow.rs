@@ -216,7 +216,7 @@ impl<const OF_SKY: bool> LightMap<OF_SKY> {
             drawn.image.zip(drawn.section.extra.as_ref()).filter(|_| key(None).holes.is_some())
         {
             pass.set_vertex_buffer(1, texcoords.slice(..));
-            pass.set_bind_group(3, image, &[]);
+            pass.set_bind_group(3, &image.drawn, &[]);
         }
         let mut counted = Counted::NONE;
         let asked = Asked { is_content: drawn.content.is_some(), keeps_order: false };

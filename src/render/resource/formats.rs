@@ -14,6 +14,8 @@ pub const EMISSIONS: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 pub const OWN_DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
 /// Numbers of regions, only where a technique tells them apart by passes.
 pub const REGIONS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// Triangle + 1 and city that a bent ray meets.
+pub const RAY_HITS: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// One bit per lens and class.
 pub const MASKS: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// Four colours or opacities as `lib/packed.wgsl` packs them: what neighbourhood filters read and write.

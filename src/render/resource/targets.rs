@@ -3,7 +3,7 @@
 use crate::{
     gpu::Gpu,
     render::resource::formats::{
-        COLORS, DEPTH, EMISSIONS, FILTERED, LINES, MASKS, OCCLUSION, OWN_DEPTH, PICTURE, SMOOTH_CODES, SPRITES,
+        COLORS, DEPTH, EMISSIONS, FILTERED, LINES, MASKS, OCCLUSION, OWN_DEPTH, PICTURE, RAY_HITS, SMOOTH_CODES, SPRITES,
         TRANSPARENCY, codes, through,
     },
 };
@@ -47,6 +47,8 @@ pub struct Needs {
     pub sky: u32,
     /// How much of the sky is seen.
     pub occlusion: bool,
+    /// Which triangles bent rays meet.
+    pub ray_hits: bool,
 }
 
 impl Needs {
@@ -76,6 +78,7 @@ impl Needs {
             shadow: if self.shadow == 0 { before.shadow } else { self.shadow },
             sky: if self.sky == 0 { before.sky } else { self.sky },
             occlusion: self.occlusion || before.occlusion,
+            ray_hits: self.ray_hits || before.ray_hits,
         }
     }
 }
@@ -149,6 +152,8 @@ pub struct Targets {
     pub sky: Target,
     /// How much of the sky is seen, at half the resolution (1×1 where not needed).
     pub occlusion: Target,
+    /// Which triangles bent rays meet, and of which city (1×1 where not needed).
+    pub ray_hits: Target,
 }
 
 impl Targets {
@@ -183,6 +188,7 @@ impl Targets {
             self.sky,
             self.occlusion,
             self.sprite_depth,
+            self.ray_hits,
         ]
     }
 
@@ -256,6 +262,7 @@ impl Targets {
             shadow: make_any("shadow map", [needs.shadow, needs.shadow, 1], DEPTH, drawn, false),
             sky: make_any("sky map", [needs.sky, needs.sky, 1], DEPTH, drawn, false),
             occlusion: make_any("ambient occlusion", halves, OCCLUSION, drawn, false),
+            ray_hits: make_any("triangles of rays", full(needs.ray_hits), RAY_HITS, drawn, false),
         }
     }
 }

@@ -1,0 +1,287 @@
+//! Hard case 27: lenses that bend rays, held to a slow ray caster: per pixel the path of Wang et al.'s own equations in f64, and every triangle.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use veduta::{
+    lens::{
+        Lens, LensBody, LensKind,
+        kind::{FisheyeLens, Magnifier, SamplingLens},
+        ray::{
+            Bend, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate,
+        },
+    },
+    render::{
+        frame::Backend,
+        picture::{Aovs, Picture, Request, Studio},
+    },
+    scene::Scene,
+    view::{Camera, Projection, View},
+};
+
+use crate::{lenses::pixels, studio};
+
+/// Of pictures in an ordinary run.
+const SIZE: [u32; 2] = [96, 64];
+/// Pixels of an ordinary run.
+const USUAL: u64 = 12_000;
+/// How far from an edge's image an object may be another one, pixels.
+const BESIDE_PX: f64 = 1e-3;
+/// How far depths may be outside of those that the rays around have, of themselves: what f32 rounds of places and slopes.
+const DEPTH_OFF: f64 = 2e-6;
+
+/// A lens of the reference, as the equations have it.
+#[derive(Clone, Debug)]
+pub struct Bent {
+    center: DVec2,
+    radius: f64,
+    is_square: bool,
+    what: What,
+}
+
+#[derive(Clone, Debug)]
+enum What {
+    /// Equation 1: a plane at `z_l`, its focal point at `f` behind it, a border, and the depth from which on rays go as the eye sees.
+    Magnifier { z_l: f64, f: f64, border: f64, z_m: f64 },
+    /// Equation 3.
+    Sampling(SamplingRate),
+    Fisheye(f64, FisheyeProjection),
+}
+
+impl Bent {
+    /// That of a lens whose distances are given.
+    pub fn new(lens: &RayLens, view: &View) -> Self {
+        let half = view.half_extent();
+        let center = DVec2::new((2.0 * lens.center.x - 1.0) * half.x, (1.0 - 2.0 * lens.center.y) * half.y);
+        let what = match &lens.bend {
+            Bend::Magnify(Magnify { magnification: m, at, distance, border }) => {
+                let (z_l, z_m) = (distance.expect("a distance"), at.expect("a depth"));
+                // For a wanted magnification at a depth.
+                let plain = if view.is_orthographic() { 1.0 } else { 1.0 + z_m / z_l };
+                What::Magnifier { z_l, f: z_m / (1.0 - plain / m), border: border * lens.radius * 2.0 * half.y, z_m }
+            }
+            Bend::Sample(Sampling { rate }) => What::Sampling(rate.clone()),
+            Bend::Fisheye(Fisheye { angle, projection }) => What::Fisheye(*angle, *projection),
+        };
+        Self { center, radius: lens.radius * 2.0 * half.y, is_square: lens.outline == RayOutline::Square, what }
+    }
+
+    fn radius_at(&self, from: DVec2) -> f64 {
+        if self.is_square { from.abs().max_element() } else { from.length() }
+    }
+}
+
+/// A piece of a ray: from where to where in its parameter, where it begins and goes, view space.
+pub type Piece = ([f64; 2], DVec3, DVec3);
+
+/// The path of the ray of a place of the picture through one lens.
+pub fn path(lens: &Bent, place: DVec2, is_parallel: bool) -> Vec<Piece> {
+    let own = |place: DVec2| match is_parallel {
+        true => (place.extend(0.0), DVec3::NEG_Z),
+        false => (DVec3::ZERO, place.extend(-1.0)),
+    };
+    let (origin, direction) = own(place);
+    let from = place - lens.center;
+    let r = lens.radius_at(from);
+    if r >= lens.radius {
+        return vec![([0.0, f64::INFINITY], origin, direction)];
+    }
+    match &lens.what {
+        What::Magnifier { z_l, f, border, z_m } => {
+            let k = if *border > 0.0 { ((r - (lens.radius - border)) / border).clamp(0.0, 1.0) } else { 0.0 };
+            let on_plane = origin + z_l * direction;
+            // The focal point, on the line of sight through the lens' middle; and where the ray would meet its plane.
+            let (middle_origin, middle_direction) = own(lens.center);
+            let focus = middle_origin + (z_l + f) * middle_direction;
+            let undisturbed = origin + (z_l + f) * direction;
+            let target = focus + k * (undisturbed - focus);
+            let slope = (target - on_plane) / f;
+            let reached = on_plane + z_m * slope;
+            let end = z_l + z_m;
+            let on = if is_parallel { DVec3::NEG_Z } else { reached / end };
+            vec![
+                ([0.0, *z_l], origin, direction),
+                ([*z_l, end], on_plane - z_l * slope, slope),
+                ([end, f64::INFINITY], reached - end * on, on),
+            ]
+        }
+        What::Sampling(rate) => {
+            // The integral by many small steps.
+            let steps = 4000;
+            let integral = |to: f64| {
+                let step = to / f64::from(steps);
+                (0..steps).map(|i| step / rate.at((f64::from(i) + 0.5) * step)).sum::<f64>()
+            };
+            let share = r / lens.radius;
+            let shown = if share > 0.0 { integral(share) / integral(1.0) / share } else { 0.0 };
+            let (origin, direction) = own(lens.center + shown * from);
+            vec![([0.0, f64::INFINITY], origin, direction)]
+        }
+        What::Fisheye(angle, projection) => {
+            let share = from.length() / lens.radius;
+            let turn = match projection {
+                FisheyeProjection::Angular => share * angle / 2.0,
+                FisheyeProjection::Hemispherical => (share * (angle / 2.0).sin()).asin(),
+            };
+            let forward = own(if is_parallel { DVec2::ZERO } else { lens.center }).1.normalize();
+            let right = forward.cross(DVec3::Y).normalize();
+            let up = right.cross(forward);
+            let aside = if share > 0.0 { (from.x * right + from.y * up).normalize() } else { DVec3::ZERO };
+            vec![([0.0, f64::INFINITY], DVec3::ZERO, turn.cos() * forward + turn.sin() * aside)]
+        }
+    }
+}
+
+/// A triangle of the city, view space.
+struct Face {
+    corners: [DVec3; 3],
+    object: u32,
+}
+
+/// Where a line meets a triangle (Möller & Trumbore, 1997).
+fn meets(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+    let (ab, ac) = (b - a, c - a);
+    let p = direction.cross(ac);
+    let det = ab.dot(p);
+    if det.abs() < 1e-300 {
+        return None;
+    }
+    let from = origin - a;
+    let u = from.dot(p) / det;
+    let q = from.cross(ab);
+    let v = direction.dot(q) / det;
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| ac.dot(q) / det)
+}
+
+/// What a path meets first: its object and the parameter.
+fn first(faces: &[Face], pieces: &[Piece], near: f64) -> Option<(u32, f64)> {
+    for ([begin, end], origin, direction) in pieces {
+        let met = faces.iter().filter_map(|face| {
+            let t = meets(*origin, *direction, face.corners)?;
+            (t >= begin.max(near) && t <= *end).then_some((face.object, t))
+        });
+        if let Some(found) = met.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            return Some(found);
+        }
+    }
+    None
+}
+
+fn lens(kind: impl Into<LensKind>) -> Lens {
+    Lens { body: LensBody::None, ..Lens::plain("bent", kind, [0.5; 3]) }
+}
+
+fn magnifier(ray: RayLens) -> Lens {
+    lens(Magnifier { ray })
+}
+
+fn magnify(magnification: f64, distance: f64, at: f64, border: f64) -> RayLens {
+    let bend = Magnify { magnification, at: Some(at), distance: Some(distance), border };
+    RayLens { bend: Bend::Magnify(bend), radius: 0.42, ..RayLens::magnifier() }
+}
+
+fn sampling(rate: SamplingRate) -> Lens {
+    lens(SamplingLens { ray: RayLens { bend: Bend::Sample(Sampling { rate }), radius: 0.45, ..RayLens::sampling() } })
+}
+
+fn fisheye(angle_deg: f64, projection: FisheyeProjection) -> Lens {
+    let bend = Bend::Fisheye(Fisheye { angle: angle_deg.to_radians(), projection });
+    lens(FisheyeLens { ray: RayLens { bend, ..RayLens::fisheye() } })
+}
+
+/// Lenses of every kind.
+fn all() -> Vec<Lens> {
+    let square = RayLens { outline: RayOutline::Square, ..magnify(3.0, 120.0, 90.0, 0.3) };
+    let aside = RayLens { center: DVec2::new(0.35, 0.6), radius: 0.3, ..magnify(5.0, 60.0, 140.0, 0.5) };
+    let drawn = [[0.0, 3.0], [0.3, 3.0], [0.6, 1.0], [1.0, 1.5]].map(DVec2::from).to_vec();
+    vec![
+        magnifier(magnify(2.5, 100.0, 100.0, 0.4)),
+        magnifier(aside),
+        magnifier(square),
+        magnifier(magnify(0.7, 100.0, 100.0, 0.8)),
+        magnifier(magnify(2.0, 80.0, 160.0, 0.0)),
+        sampling(SamplingRate::Cubic(3.0)),
+        sampling(SamplingRate::Points(drawn)),
+        fisheye(180.0, FisheyeProjection::Angular),
+        fisheye(320.0, FisheyeProjection::Angular),
+        fisheye(150.0, FisheyeProjection::Hemispherical),
+    ]
+}
+
+fn cameras(studio: &Studio) -> Vec<Camera> {
+    let middle = studio.extent().center();
+    let slanting = Camera::looking(middle + DVec3::new(70.0, -150.0, 120.0), middle, 0.8);
+    let level = Camera { projection: Projection::Orthographic { height_m: 160.0 }, ..slanting };
+    let street = Camera::looking(middle + DVec3::new(9.0, -60.0, 4.0), middle + DVec3::new(-6.0, 20.0, 8.0), 1.0);
+    vec![slanting, level, street]
+}
+
+fn draw(studio: &mut Studio, scene: &Scene, size: [u32; 2], backend: Backend) -> Picture {
+    let aovs = Aovs { depth: true, object_id: true, ..Aovs::default() };
+    studio.render(scene, &Request { aovs, backend, ..Request::plain(size) }).expect("a picture")
+}
+
+/// Pixels of a lens that were compared, and those that are wrong, with the farthest that a depth is off.
+fn compare(studio: &mut Studio, camera: Camera, lens: &Lens, size: [u32; 2]) -> (usize, usize, f64) {
+    let scene = studio::scene(camera, vec![lens.clone()]);
+    let picture = draw(studio, &scene, size, Backend::Specialised);
+    let view = View::new(camera, size, &studio.extent()).expect("a view");
+    let to_view = view.basis.view_from_world();
+    let faces: Vec<Face> = studio::triangles(studio)
+        .into_iter()
+        .map(|t| Face { corners: t.corners.map(|c| to_view * (c - camera.eye)), object: t.object })
+        .collect();
+    let reference = Bent::new(lens.ray().expect("a lens that bends rays"), &view);
+    let half = view.half_extent();
+    let [w, h] = size.map(f64::from);
+    let (ids, depths) = (picture.object_id.expect("ids"), picture.depth.expect("depths"));
+    let place = |pixel: DVec2| DVec2::new((2.0 * pixel.x / w - 1.0) * half.x, (1.0 - 2.0 * pixel.y / h) * half.y);
+    let met = |pixel: DVec2| {
+        first(&faces, &path(&reference, place(pixel), view.is_orthographic()), camera.near_m)
+    };
+    let of_pixel = |i: usize| {
+        let pixel = DVec2::new((i % size[0] as usize) as f64 + 0.5, (i / size[0] as usize) as f64 + 0.5);
+        let from = place(pixel) - reference.center;
+        if reference.radius_at(from) >= reference.radius {
+            return None;
+        }
+        let around = (0..8).map(|k| BESIDE_PX * DVec2::from_angle(f64::from(k) * std::f64::consts::FRAC_PI_4));
+        let own = met(pixel);
+        let met: Vec<Option<(u32, f64)>> = std::iter::once(own).chain(around.map(|aside| met(pixel + aside))).collect();
+        let shown: Vec<f64> = match ids[i] {
+            // The plain ground, or nothing.
+            0 => return Some((met.iter().any(Option::is_none), 0.0)),
+            id => met.iter().flatten().filter(|(object, _)| object + 1 == id).map(|(_, t)| *t).collect(),
+        };
+        let nearest = shown.iter().copied().fold(f64::INFINITY, f64::min);
+        let farthest = shown.iter().copied().fold(0.0, f64::max);
+        let depth = f64::from(depths[i]);
+        let off = (nearest / depth - 1.0).max(1.0 - farthest / depth).max(0.0);
+        Some((off <= DEPTH_OFF, off))
+    };
+    let found: Vec<(bool, f64)> = (0..ids.len()).into_par_iter().filter_map(of_pixel).collect();
+    let wrong = found.iter().filter(|(is_right, _)| !is_right).count();
+    (found.len(), wrong, found.iter().map(|(_, off)| *off).fold(0.0, f64::max))
+}
+
+#[test]
+fn what_bent_rays_show_is_what_a_slow_caster_says() {
+    let mut studio = studio::synthetic(40);
+    let wanted = pixels(USUAL);
+    let scale = (wanted as f64 / USUAL as f64).sqrt().max(1.0);
+    let size = SIZE.map(|side| (f64::from(side) * scale).round() as u32);
+    let (mut compared, mut rows) = (0, Vec::new());
+    for (c, camera) in cameras(&studio).into_iter().enumerate() {
+        for (l, lens) in all().iter().enumerate() {
+            // In an ordinary run each lens from one of the eyes.
+            if scale == 1.0 && (c + l) % 3 != 0 {
+                continue;
+            }
+            let (pixels, wrong, off) = compare(&mut studio, camera, lens, size);
+            compared += pixels;
+            rows.push(format!("eye {c}, lens {l}: {wrong} of {pixels} wrong, depths off by {off:.1e}"));
+            assert!(pixels > 500, "{rows:#?}");
+            assert!(wrong == 0, "{rows:#?}");
+        }
+    }
+    println!("{compared} pixels\n{}", rows.join("\n"));
+}
