@@ -6,7 +6,7 @@
 // through an edge that two triangles share. What hides fragments elsewhere (`visible`) is asked of each hit.
 
 // Words are four u32 each. A box: two, least corner and first, greatest corner and count; of an inner box the count is 0 and `first` is that of its two
-// boxes. A triangle: three, a corner each and its surface, what it is (TRIANGLE_*), and where its rest begins.
+// boxes. A triangle: three, a corner each and its surface, what it is (TRIANGLE_*), and where its rest begins, counted from the first box.
 struct RayCity {
     from_view_x: vec4f,         // columns of the turn and scale from view space to the city's own; w: metres of a step of its grid
     from_view_y: vec4f,
@@ -192,7 +192,7 @@ fn hit_of(number: u32, ray: CityRay, triangle: u32) -> Hit {
     let depth = (u * a.z + v * b.z + w * c.z) / sum;
     var t = depth / component(ray.direction, ray.axes.z);
     if (words.w & TRIANGLE_IN_PLANE) != 0u {
-        t = distance_to_plane(number, ray, ray_words[triangle + 2u].w, t);
+        t = distance_to_plane(number, ray, ray_cities.all[number].boxes + ray_words[triangle + 2u].w, t);
     }
     return Hit(t, triangle, number, vec2f(v, w) / sum);
 }
@@ -287,7 +287,7 @@ fn first_of_pixel(at: vec2f, last: Hit) -> Hit {
 // Words of a triangle's rest behind its plane: of each corner its normal, then its texture coordinates.
 fn rest_of(hit: Hit) -> u32 {
     let is_in_plane = (ray_words[hit.triangle + 1u].w & TRIANGLE_IN_PLANE) != 0u;
-    return ray_words[hit.triangle + 2u].w + select(0u, 2u, is_in_plane);
+    return ray_cities.all[hit.city].boxes + ray_words[hit.triangle + 2u].w + select(0u, 2u, is_in_plane);
 }
 
 // The weights of the corners where a line meets the plane of a triangle.

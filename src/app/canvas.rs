@@ -115,12 +115,25 @@ pub fn pick(frame: &Frame, at: DVec2) -> Option<Hovered> {
     if !depth.is_finite() {
         return None;
     }
+    if !frame.rays.is_empty() {
+        return Some(Hovered { object: ids.get(i)?.checked_sub(1), at: bent_place(frame, [x, y], depth) });
+    }
     let ray = frame.view.pixel_ray(x, y);
     let along = ray.direction.dot(frame.view.basis.forward);
     // Metres along the view axis from the eye's plane.
     let start = frame.view.depth(ray.origin);
     let place = ray.at((depth - start) / along);
     Some(Hovered { object: ids.get(i)?.checked_sub(1), at: place })
+}
+
+/// The place that a pixel shows so far away, where lenses bend rays.
+fn bent_place(frame: &Frame, pixel: [u32; 2], depth: f64) -> DVec3 {
+    let view = &frame.view;
+    let share = (DVec2::from(pixel.map(f64::from)) + 0.5) / DVec2::from(view.size.map(f64::from));
+    let across = DVec2::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y) * view.half_extent();
+    let place = frame.rays.line(across, depth).at(depth);
+    let to_world = view.basis.view_from_world().transpose();
+    view.camera.eye + to_world * place
 }
 
 impl Window {
@@ -229,6 +242,9 @@ impl Window {
         if response.hovered() || response.clicked() {
             let scroll = ui.input(|input| input.smooth_scroll_delta().y + 400.0 * (input.zoom_delta() - 1.0));
             if let (true, Some(at)) = (scroll != 0.0, ui.input(|input| input.pointer.hover_pos())) {
+                if self.wheel_of_ray(ui, rect, at, scroll) {
+                    return;
+                }
                 if let Some(place) = self.place_at(rect, at) {
                     self.canvas.flight = None;
                     self.look(navigate::zoom(&camera, place, (-ZOOM * f64::from(scroll)).exp()));
@@ -276,6 +292,10 @@ impl Window {
                 self.gizmo_at(&view, rect, at)
             })
         });
+        if let Some(drag) = held.and_then(|gizmo| self.ray_grip(gizmo, at)) {
+            self.canvas.drag = Some(drag);
+            return;
+        }
         if let Some(grip) = held.and_then(|gizmo| self.grip(gizmo, at)) {
             self.canvas.drag = Some(Drag::Gizmo(Box::new(grip)));
             return;
@@ -325,6 +345,7 @@ impl Window {
                     self.drag_grip(&grip, &view, rect, now, shift);
                 }
             }
+            Drag::Ray { lens, kind, off } => self.drag_ray(lens, kind, rect, now - off),
             Drag::Along(held) => {
                 if let Some(view) = self.view_in(rect) {
                     self.drag_along(&held, &view, rect, now);

@@ -29,6 +29,12 @@ pub(super) enum Drag {
         lens: usize,
         off: Vec2,
     },
+    /// A gizmo of a lens that bends rays: what is held of it is so far from it.
+    Ray {
+        lens: usize,
+        kind: GizmoKind,
+        off: Vec2,
+    },
     /// An object along its way: through time.
     Along(Arc<Held>),
 }

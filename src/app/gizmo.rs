@@ -68,9 +68,12 @@ impl Window {
     /// The middles of a lens' shapes and, of the chosen one, all that can be held, the first before what it would cover.
     fn gizmos_of(&self, index: usize, view: &View, rect: Rect) -> Vec<Gizmo> {
         let Some(lens) = self.document.scene().lenses.get(index) else { return Vec::new() };
+        let is_held = self.chosen.lens == Some(index) && !self.is_locked(lens);
+        if let Some(ray) = lens.ray() {
+            return self.ray_gizmos(index, ray, rect, is_held);
+        }
         let Some(origin) = self.origin_of(lens) else { return Vec::new() };
         let ground = self.ground_from(origin);
-        let is_held = self.chosen.lens == Some(index) && !self.is_locked(lens);
         let mut shown: Vec<Gizmo> = Vec::new();
         for (shape, region) in lens.shapes.iter().enumerate().filter_map(|(i, own)| Some((i, own.own_shape()?))) {
             let gizmo = |kind, place, at| Gizmo { lens: index, shape, kind, place, at };

@@ -27,6 +27,7 @@ pub mod new_lens;
 pub mod objects;
 mod outlines;
 pub mod properties;
+mod ray_gizmos;
 pub mod render_thread;
 mod scrub;
 mod spots;

@@ -1,6 +1,6 @@
 //! Lenses as they are put into a scene: what a person means who asks for one, in the words of scene files.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
     app::document::Document,
@@ -30,6 +30,10 @@ pub enum NewLens {
     Deformation,
     /// Presses down what hides an object.
     Lower,
+    /// Shows larger what lies behind its plane.
+    Magnifier,
+    /// Shows more directions than the picture.
+    Fisheye,
     /// A picture of an object.
     BestView,
     /// A text about an object.
@@ -43,6 +47,8 @@ pub enum NewLens {
 pub struct Spot {
     /// Its middle, on the ground or on what was picked, metres.
     pub at: DVec3,
+    /// Where that is in the picture: shares of its width and height.
+    pub share: DVec2,
     /// Its size, metres.
     pub radius: f64,
     /// The object it is about, by id.
@@ -66,6 +72,8 @@ impl NewLens {
             Self::Occlusion => "revealed",
             Self::Deformation => "raised",
             Self::Lower => "lowered",
+            Self::Magnifier => "magnifier",
+            Self::Fisheye => "fisheye",
             Self::BestView => "view",
             Self::Annotation => "note",
             Self::Map => "map",
@@ -91,6 +99,7 @@ impl NewLens {
             2.0 * r
         );
         let poi = quoted(&poi);
+        let [sx, sy] = spot.share.to_array().map(|share| (share.clamp(0.0, 1.0) * 1e4).round() / 1e4);
         let what = match self {
             Self::Color => format!("kind = \"color\", {shape}, effects = [\"sepia\"]"),
             Self::XRay => format!("kind = \"color\", {shape}, effects = [\"x-ray\"]"),
@@ -112,6 +121,8 @@ impl NewLens {
             Self::Lower => {
                 format!("kind = \"deformation\", deform = [{{ kind = \"lower\", poi = {poi}, factor = 0.15 }}]")
             }
+            Self::Magnifier => format!("kind = \"magnifier\", ray = {{ center = [{sx}, {sy}] }}"),
+            Self::Fisheye => format!("kind = \"fisheye\", ray = {{ center = [{sx}, {sy}], radius = 0.3 }}"),
             Self::BestView => format!("kind = \"best-view\", poi = {poi}"),
             Self::Annotation => format!("kind = \"annotation\", poi = {poi}, text = \"{{name}}\""),
             Self::Map => "kind = \"map-view\"".to_owned(),
@@ -196,7 +207,7 @@ mod tests {
     fn a_change_lens_brings_what_it_shows() {
         let mut document = Document::new(Scene::default(), None);
         document.set("time.at=\"1850-06-01\"").expect("a scene");
-        let spot = Spot { at: DVec3::ZERO, radius: 50.0, object: None };
+        let spot = Spot { at: DVec3::ZERO, share: DVec2::splat(0.5), radius: 50.0, object: None };
         assert_eq!(NewLens::Change.add(&mut document, &spot), Ok(0));
         let year = |year: i64| Moment::of_date(year, 6, 1).expect("a day");
         let changes = document.scene().city.changes.clone();

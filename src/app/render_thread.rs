@@ -38,7 +38,7 @@ use crate::{
     },
     geom::Aabb,
     gpu::{Gpu, GpuError},
-    lens::thematic::attribute_names,
+    lens::{ray_path::RayPaths, thematic::attribute_names},
     render::{
         picture::{Aovs, RenderError, Request, ShownOverlay, Studio},
         stats::{self, Statistics},
@@ -162,6 +162,8 @@ pub struct Frame {
     pub rgba: Vec<[u8; 4]>,
     /// For each pixel the object's index + 1 and metres along the view axis (+∞: nothing); only of pictures that stand still.
     pub shown: Option<(Vec<u32>, Vec<f32>)>,
+    /// How lenses bend rays in it.
+    pub rays: RayPaths,
     /// Where overlays stand in it; only of pictures that stand still.
     pub overlays: Vec<ShownOverlay>,
     /// Samples per pixel.
@@ -619,6 +621,7 @@ impl Worker {
             view,
             rgba: picture.rgba,
             overlays: picture.overlays,
+            rays: picture.rays,
             shown: picture.object_id.zip(picture.depth),
             samples: request.samples,
             is_final: is_refined,

@@ -277,9 +277,10 @@ impl Deforming {
 /// The cities that deformations may move in a frame, each once.
 fn worlds_of(contents: &Contents, input: &FrameInput) -> Vec<World> {
     let has_shadows = casts_shadows(&input.sun) || occludes_sky(&input.sun, input.samples);
+    let bends = !input.rays.is_empty();
     let may_show = |lens: u32| {
         let is_seen =
-            |v: &LensVolume| v.seen_part(&input.view, input.tile).is_some() || has_shadows && !v.keeps_shadows;
+            |v: &LensVolume| bends || v.seen_part(&input.view, input.tile).is_some() || has_shadows && !v.keeps_shadows;
         input.volumes.iter().any(|v| v.lens == lens && is_seen(v))
     };
     // What moves by timetables is shown everywhere.

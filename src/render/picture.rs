@@ -25,7 +25,7 @@ use crate::{
     },
     geom::{Aabb, deform::Deformers},
     gpu::{Gpu, GpuError, Timer},
-    lens::solids::ShownCity,
+    lens::{ray_path::RayPaths, solids::ShownCity},
     render::{
         bands::{Band, ClassCounts, DrawnBand},
         best_views::KnownViews,
@@ -143,6 +143,8 @@ pub struct Picture {
     pub(super) weakened: BTreeMap<u32, u32>,
     /// What deformations took.
     pub(super) deformed: Option<DeformedFigures>,
+    /// How lenses bend rays in it.
+    pub rays: RayPaths,
     /// The overlays that lie over it, by their lenses.
     pub overlays: Vec<ShownOverlay>,
     /// Characters of the furniture that no font has.
@@ -433,6 +435,7 @@ impl Studio {
         picture.not_derived = diagnostics::not_derived(&resolved.contents);
         picture.weakened = resolved.deformations.weakened.clone();
         picture.deformed = self.renderer.deformed_figures();
+        picture.rays = resolved.rays.clone();
         picture.without_glyph = diagnostics::without_glyph(furniture);
         if request.statistics {
             picture.statistics.handlers = handlers_that_ran(self.renderer.planned(), &resolved.operations, &picture);

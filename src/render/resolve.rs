@@ -158,7 +158,8 @@ impl Surroundings<'_> {
         let solids = known.solid_table.clone();
         let rays = self.rays(scene, &view)?;
         refuse_with_rays(scene, &rays)?;
-        if rays.looks_around() && view.is_orthographic() {
+        view.looks_around = rays.looks_around();
+        if view.looks_around && view.is_orthographic() {
             // Its depths are distances from the eye.
             let farthest = all.corners().map(|corner| corner.distance(camera.eye)).into_iter().fold(0.0, f64::max);
             view.far_m = view.far_m.max(1.001 * farthest + 1.0);
@@ -281,6 +282,7 @@ impl Surroundings<'_> {
         };
         let sun = self.facts.as_ref().filter(|_| casts_shadows(&scene.sun)).and_then(map);
         let sun = sun.map(|sun| sun.widest().frustum(1.0));
+        let bends = scene.lenses.iter().any(|lens| lens.enabled && lens.ray().is_some());
         let stage = content_cities::Stage {
             drawn,
             model: self.model,
@@ -289,6 +291,9 @@ impl Surroundings<'_> {
             volumes,
             motion: &|lens| eye.motion(lens, scene, self.city.model),
             is_seen: &|volume| {
+                if bends {
+                    return true;
+                }
                 let is_in_sun = sees_sky || sun.as_ref().is_some_and(|frustum| frustum.meets(&volume.bounds));
                 is_in_sun || volume.seen_part(view, whole(view.size)).is_some()
             },

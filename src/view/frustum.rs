@@ -42,6 +42,9 @@ pub struct Frustum {
 const SLACK_M: f64 = 1e-6;
 
 impl Frustum {
+    /// All of the world.
+    pub const EVERYTHING: Self = Self { sides: [HalfSpace { normal: DVec3::Z, offset: f64::NEG_INFINITY }; 5] };
+
     /// Whether the closed box may be visible: never `false` for one that is, seldom `true` for one that is not
     /// (boxes beyond an edge of the frustum).
     pub fn meets(&self, bounds: &Aabb) -> bool {

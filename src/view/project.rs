@@ -22,6 +22,8 @@ pub struct View {
     pub size: [u32; 2],
     /// Far plane, metres along the view axis: +∞ in perspective; in orthographic views beyond everything.
     pub far_m: f64,
+    /// Whether what lies in any direction may be seen: in a fisheye.
+    pub looks_around: bool,
 }
 
 impl View {
@@ -41,7 +43,7 @@ impl View {
                 (deepest * 1.001 + 1.0).max(camera.near_m + 1.0)
             }
         };
-        Ok(Self { camera, basis, size, far_m })
+        Ok(Self { camera, basis, size, far_m, looks_around: false })
     }
 
     /// Width over height.
@@ -148,6 +150,9 @@ impl View {
 
     /// The visible part of the world, widened by `margin_px` pixels on all four sides (1 covers every jitter).
     pub fn frustum(&self, margin_px: f64) -> Frustum {
+        if self.looks_around {
+            return Frustum::EVERYTHING;
+        }
         let wider = DVec2::new(
             1.0 + 2.0 * margin_px / f64::from(self.size[0]),
             1.0 + 2.0 * margin_px / f64::from(self.size[1]),

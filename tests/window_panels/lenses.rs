@@ -1,6 +1,6 @@
 //! Lenses in their list, in the picture and over it.
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use veduta::{app::lens_list::State, geom::Shape, lens::Region};
 
 use super::*;
@@ -279,4 +279,60 @@ fn a_portal_is_stepped_through_and_leads_back() {
     let at = overlay(&harness, 0);
     click_at(&mut harness, at);
     assert_eq!(harness.state().camera().unwrap().eye, before.eye);
+}
+
+#[test]
+fn a_magnifier_is_held_by_its_middle_and_rim_and_the_wheel_magnifies() {
+    use veduta::lens::ray::Bend;
+    let mut harness = with("");
+    harness.state_mut().chosen.lens = None;
+    click(&mut harness, "Lens");
+    click(&mut harness, "Add magnifier");
+    until_drawn(&mut harness);
+    let ray = |harness: &Panels| harness.state().document.scene().lenses[0].ray().expect("a magnifier").clone();
+    let before = ray(&harness);
+    let city = harness.get_by_label("City").rect();
+    let at = |ray: &veduta::lens::ray::RayLens| {
+        city.min + egui::vec2(ray.center.x as f32, ray.center.y as f32) * city.size()
+    };
+    // What is picked is what the bent ray meets.
+    {
+        let frame = harness.state().frame.as_ref().expect("a picture");
+        let size = DVec2::from(frame.view.size.map(f64::from));
+        let pixel = (before.center * size + DVec2::new(0.4 * before.radius * size.y, 0.0)).floor();
+        let picked = pick(frame, pixel + 0.5).expect("a place").at;
+        let straight = frame.view.ray(pixel + 0.5).at(frame.view.depth(picked));
+        assert!(picked.distance(straight) > 1.0, "{picked} is where a straight ray goes");
+        let shown = frame.shown.as_ref().expect("depths").1[(pixel.y * size.x + pixel.x) as usize];
+        assert!((frame.view.depth(picked) - f64::from(shown)).abs() < 1e-4 * f64::from(shown));
+    }
+    drag(&mut harness, at(&before), at(&before) + egui::vec2(60.0, -30.0));
+    let moved = ray(&harness);
+    assert!(at(&moved).distance(at(&before) + egui::vec2(60.0, -30.0)) < 1.0);
+    until_drawn(&mut harness);
+    let rim = at(&moved) + egui::vec2(moved.radius as f32 * city.height(), 0.0);
+    drag(&mut harness, rim, rim + egui::vec2(24.0, 0.0));
+    let wider = ray(&harness);
+    assert!((wider.radius - moved.radius - f64::from(24.0 / city.height())).abs() < 2e-3, "{}", wider.radius);
+    let mut wheel = |modifiers: Modifiers| {
+        harness.hover_at(at(&wider));
+        harness.event(egui::Event::ModifiersChanged(modifiers));
+        harness.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: egui::vec2(0.0, 60.0),
+            modifiers,
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Unknown,
+        });
+        harness.run_steps(20);
+        harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+        harness.step();
+        let Bend::Magnify(magnify) = ray(&harness).bend else { panic!("a magnifier") };
+        magnify
+    };
+    let Bend::Magnify(first) = wider.bend else { panic!("a magnifier") };
+    let larger = wheel(Modifiers::NONE);
+    assert!(larger.magnification > 1.05 * first.magnification && larger.border == first.border);
+    let softer = wheel(Modifiers::ALT);
+    assert!(softer.border > first.border && softer.magnification == larger.magnification);
 }

@@ -6,7 +6,7 @@ use std::{
 };
 
 use eframe::egui::{self, Context};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::{
     app::{
@@ -338,16 +338,28 @@ impl Window {
             Some((id, bounds)) if !bounds.is_empty() => {
                 let radius = (0.6 * bounds.size().length()).max(1.0);
                 let at = bounds.center().with_z(bounds.min.z);
-                Spot { at, radius, object: Some(id) }
+                Spot { at, share: self.share_of(at), radius, object: Some(id) }
             }
             _ => {
                 let camera = self.camera();
                 let shown = || self.canvas.middle(self.frame.as_deref());
                 let at = self.canvas.pointed().or_else(shown).or(camera.map(|camera| camera.target));
                 let distance = camera.zip(at).map_or(100.0, |(camera, at)| camera.eye.distance(at));
-                Spot { at: at.unwrap_or(DVec3::ZERO), radius: (0.1 * distance).clamp(1.0, 2_000.0), object: None }
+                let at = at.unwrap_or(DVec3::ZERO);
+                let radius = (0.1 * distance).clamp(1.0, 2_000.0);
+                Spot { at, share: self.share_of(at), radius, object: None }
             }
         }
+    }
+
+    /// Where a place is in the picture, shares of its width and height; the middle where it is in none.
+    fn share_of(&self, at: DVec3) -> DVec2 {
+        let view = self.canvas.rect.and_then(|rect| self.view_in(rect));
+        let share = view.and_then(|view| {
+            let pixel = view.pixel(at)?.truncate();
+            Some(pixel / DVec2::from(view.size.map(f64::from)))
+        });
+        share.filter(|share| share.cmpge(DVec2::ZERO).all() && share.cmple(DVec2::ONE).all()).unwrap_or(DVec2::splat(0.5))
     }
 
     fn duplicate(&mut self) {

@@ -18,6 +18,8 @@ use crate::{
 
 /// Storage buffers that a shader of layers binds: two of lists, and what lens tests read.
 const BUFFERS: u32 = 8;
+/// And where rays are followed to them: triangles.
+const BUFFERS_OF_RAYS: u32 = 9;
 
 /// What is translucent in a frame, and where.
 #[derive(Clone, Debug)]
@@ -73,7 +75,8 @@ impl<'a> Layering<'a> {
     /// # Errors
     /// That the device binds fewer buffers than lists of layers take.
     pub fn clear(&self, frame: &FrameContext, recording: &mut Recording) -> Result<(), GpuError> {
-        check(frame.gpu)?;
+        let bends = frame.plan.input.operations.bends.is_any();
+        check(frame.gpu, if bends { BUFFERS_OF_RAYS } else { BUFFERS })?;
         let clear = wgpu::Color { r: 0.0, g: 0.0, b: 0.0, a: 1.0 };
         let targets = frame.targets;
         let colors = [
@@ -125,11 +128,11 @@ pub fn common(a: PictureTile, b: PictureTile) -> PictureTile {
 }
 
 /// Refuses a device that binds fewer buffers than lists of layers take.
-fn check(gpu: &Gpu) -> Result<(), GpuError> {
+fn check(gpu: &Gpu, wanted: u32) -> Result<(), GpuError> {
     let most = gpu.device.limits().max_storage_buffers_per_shader_stage;
-    if most >= BUFFERS {
+    if most >= wanted {
         return Ok(());
     }
-    let message = format!("it binds {most} storage buffers at a time; what is translucent takes {BUFFERS}");
+    let message = format!("it binds {most} storage buffers at a time; what is translucent takes {wanted}");
     Err(GpuError::Failed { adapter: gpu.name(), message })
 }
