@@ -13,6 +13,8 @@ struct RayLens {
     first_knot: u32,            // of a sampled radius
     knots: u32,
     angle: f32,                 // of a fisheye, from its middle to its rim, radians
+    color: vec3f,               // of its grid, linear
+    grid: f32,                  // how far the lines of a grid are apart where it bends nothing, as its radius; 0: there is none
 }
 
 const RAY_PLANE: u32 = 0u;

@@ -107,7 +107,7 @@ fn take(in: Corner) {
 var<private> is_kept: bool = true;
 
 fn finished(paint: vec4f, point: Point, pixel: vec2i, classes: Classes) -> vec4f {
-    let seen = outlines(paint, pixel, classes);
+    let seen = outlines(gridded(paint, pixel), pixel, classes);
     write_classes(pixel, point, classes);
     is_kept = is_lit_here(point);
     if SUMMED {

@@ -35,6 +35,8 @@ pub struct Rim {
     pub radius: f64,
     /// Its outline.
     pub outline: RayOutline,
+    /// The colour of the grid over it, sRGB; `None`: it has none.
+    pub grid: Option<[f32; 3]>,
 }
 
 impl Rim {
@@ -165,20 +167,20 @@ impl PictureFrame {
     /// Where the rim of a lens is.
     pub fn rim(&self, lens: &RayLens) -> Rim {
         let place = DVec2::new(2.0 * lens.center.x - 1.0, 1.0 - 2.0 * lens.center.y);
-        Rim { center: place * self.half, radius: lens.radius * 2.0 * self.half.y, outline: lens.outline }
+        Rim { center: place * self.half, radius: lens.radius * 2.0 * self.half.y, outline: lens.outline, grid: None }
     }
 }
 
 impl RayPaths {
-    /// The lenses of a picture. `lenses`: their numbers, bottom first; `shown`: D of what is seen at a place of the picture without them, metres.
+    /// The lenses of a picture. `lenses`: their numbers, bottom first, and their colours, sRGB; `shown`: D of what is seen at a place of the picture without them, metres.
     pub fn new(
-        lenses: &[(u32, &RayLens)],
+        lenses: &[(u32, &RayLens, [f32; 3])],
         frame: &PictureFrame,
         shown: impl Fn(DVec2) -> Option<f64>,
     ) -> Self {
         let mut paths = Self { is_parallel: frame.is_parallel, ..Self::default() };
-        for &(number, lens) in lenses {
-            let rim = frame.rim(lens);
+        for &(number, lens, color) in lenses {
+            let rim = Rim { grid: lens.grid.then_some(color), ..frame.rim(lens) };
             if !(rim.radius > 0.0) {
                 continue;
             }
@@ -381,7 +383,7 @@ mod tests {
     }
 
     fn paths(lenses: &[RayLens], is_parallel: bool) -> RayPaths {
-        let numbered: Vec<(u32, &RayLens)> = (0..).zip(lenses).collect();
+        let numbered: Vec<_> = (0..).zip(lenses).map(|(number, lens)| (number, lens, [0.0; 3])).collect();
         RayPaths::new(&numbered, &frame(is_parallel), |_| None)
     }
 
@@ -521,7 +523,7 @@ mod tests {
         let plane = |at, distance| {
             let bend = Bend::Magnify(Magnify { magnification: 2.0, at, distance, border: 0.4 });
             let lens = RayLens { bend, ..RayLens::magnifier() };
-            let paths = RayPaths::new(&[(3, &lens)], &frame(false), |_| Some(100.0));
+            let paths = RayPaths::new(&[(3, &lens, [0.0; 3])], &frame(false), |_| Some(100.0));
             (paths.planes[0].lens, paths.planes[0].distance, paths.planes[0].until)
         };
         assert_eq!(plane(None, None), (3, 50.0, 100.0));

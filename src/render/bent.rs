@@ -7,13 +7,15 @@ use crate::{
         ray::{FisheyeProjection, RayOutline, SAMPLED_KNOTS},
         ray_path::{ImageBend, MOST_RAY_LENSES, RayPaths, Rim},
     },
-    render::{eye::PictureTile, layout, screen_bound::ScreenBound},
+    render::{eye::PictureTile, layout, palette, screen_bound::ScreenBound},
     view::View,
 };
 
 /// Pixels around a rim: samples lie up to half a pixel beside the pixels' centres.
 const MARGIN_PX: f64 = 1.0;
 
+/// Lines of a grid from the middle of a lens to its rim, where it bends nothing.
+const GRID_LINES: f64 = 8.0;
 /// As `lib/view.wgsl` has it.
 const FAR_AWAY: f32 = 1e30;
 
@@ -91,6 +93,8 @@ fn of_rim(rim: &Rim) -> layout::RayLens {
         center: rim.center.as_vec2().to_array(),
         radius: rim.radius as f32,
         outline: u32::from(rim.outline == RayOutline::Square),
+        grid: if rim.grid.is_some() { (rim.radius / GRID_LINES) as f32 } else { 0.0 },
+        color: rim.grid.map_or([0.0; 3], palette::linear),
         ..bytemuck::Zeroable::zeroed()
     }
 }

@@ -349,6 +349,8 @@ pub struct RayLens {
     pub first_knot: u32,
     pub knots: u32,
     pub angle: f32,
+    pub color: [f32; 3],
+    pub grid: f32,
 }
 
 /// `lib/bent-rays.wgsl`: kinds of lenses that bend rays.
@@ -705,7 +707,9 @@ mod tests {
                 outline,
                 first_knot,
                 knots,
-                angle
+                angle,
+                color,
+                grid
             })),
             (&rays, host!(RayEvent { distance, lens, ends, reserved })),
             (&rays, host!(RayLenses { images, planes, events, stretch, lenses, along, knots })),

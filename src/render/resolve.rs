@@ -170,8 +170,9 @@ impl Surroundings<'_> {
 
     /// The lenses that bend rays.
     fn rays(&self, scene: &Scene, view: &View) -> Result<RayPaths, ResolveError> {
-        let lenses: Vec<(u32, &RayLens)> =
-            (0..).zip(&scene.lenses).filter(|(_, lens)| lens.enabled).filter_map(|(i, lens)| Some((i, lens.ray()?))).collect();
+        let enabled = (0..).zip(&scene.lenses).filter(|(_, lens)| lens.enabled);
+        let lenses: Vec<(u32, &RayLens, [f32; 3])> =
+            enabled.filter_map(|(i, lens)| Some((i, lens.ray()?, lens.color))).collect();
         if lenses.len() > MOST_RAY_LENSES {
             return Err(ResolveError::Scene(format!(
                 "{} lenses bend rays; one picture takes {MOST_RAY_LENSES}",

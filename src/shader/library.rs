@@ -66,6 +66,7 @@ files! {
     BENT_RAYS = "lib/bent-rays.wgsl";
     BENT_EDGES = "lib/bent-edges.wgsl";
     RAY_IMAGES = "pass/ray-images.wgsl";
+    RAY_GRID = "lib/ray-grid.wgsl";
     RAYS = "pass/rays.wgsl";
     RAY_WALK = "lib/ray-walk.wgsl";
     RAY_LAYERS = "pass/ray-layers.wgsl";

@@ -15,7 +15,7 @@ use crate::{
         library::{
             AMBIENT_OCCLUSION, BARE, BENT_EDGES, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM,
             DEPTH_CODE, FACADE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS,
-            HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, RAY_IMAGES, RAY_LAYERS, RAY_WALK, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
+            HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, RAY_GRID, RAY_IMAGES, RAY_LAYERS, RAY_WALK, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
             SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS,
             STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
@@ -112,6 +112,7 @@ impl Module {
         if self.bends().is_any() {
             files.push(BENT_RAYS);
             files.extend(matches!(self, Self::Lines(_)).then_some(BENT_EDGES));
+            files.extend(matches!(self, Self::Shade(_) | Self::Composite(_)).then_some(RAY_GRID));
         }
         let text = Template::of_files(&files);
         let text = match files.contains(&VIEW) {

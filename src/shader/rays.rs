@@ -18,4 +18,4 @@ pub(super) fn source(bends: Bends) -> String {
 }
 
 /// Rays that are not bent are the same all along.
-const STRAIGHT: &str = "\n// (x, y, -1) for parallel rays, too.\nfn picture_place(ray: Ray) -> vec3f {\n    return ray.origin + ray.direction;\n}\n\nfn picture_place_at(distance: f32, place: vec3f) -> vec3f {\n    return place;\n}\n\nfn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {\n    return ray_of_pixel(pixel);\n}\n\nfn see_pixel(pixel: vec2f, distance: f32) {}\n\nfn most_stretch(pixel: vec2f, reach: f32) -> f32 {\n    return 1.0;\n}\n";
+const STRAIGHT: &str = "\n// (x, y, -1) for parallel rays, too.\nfn picture_place(ray: Ray) -> vec3f {\n    return ray.origin + ray.direction;\n}\n\nfn picture_place_at(distance: f32, place: vec3f) -> vec3f {\n    return place;\n}\n\nfn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {\n    return ray_of_pixel(pixel);\n}\n\nfn see_pixel(pixel: vec2f, distance: f32) {}\n\nfn gridded(paint: vec4f, pixel: vec2i) -> vec4f {\n    return paint;\n}\n\nfn most_stretch(pixel: vec2f, reach: f32) -> f32 {\n    return 1.0;\n}\n";
