@@ -7,7 +7,7 @@ const EDGE_PARTS: u32 = 12u;
 fn shown_by_plane(lens: u32, across: vec2f, distance: f32) -> vec2f {
     let own = ray_lenses.lenses[lens];
     let share = rim_share(lens, across);
-    if distance <= own.distance || share >= 1.0 {
+    if distance <= own.distance || share >= 1.0 || own.outline == OUTLINE_FIELD {
         return across;
     }
     let e = select(1.0 / own.distance, 0.0, view.orthographic == 1u);
@@ -38,8 +38,12 @@ fn shown_by_planes(across: vec2f, distance: f32) -> vec2f {
     for (var i = 0u; i < RAY_PLANES; i++) {
         found = shown_by_plane(RAY_IMAGES + i, found, distance);
     }
-    // Several bend what others have bent.
-    for (var i = 0u; i < select(0u, 12u, RAY_PLANES > 1u); i++) {
+    // Several bend what others have bent; and a field knows no radius.
+    var rounds = select(0u, 12u, RAY_PLANES > 1u);
+    for (var i = 0u; i < RAY_PLANES; i++) {
+        rounds = max(rounds, select(0u, 40u, ray_lenses.lenses[RAY_IMAGES + i].outline == OUTLINE_FIELD));
+    }
+    for (var i = 0u; i < rounds; i++) {
         found += across - seen_by_planes(found, distance);
     }
     return found;

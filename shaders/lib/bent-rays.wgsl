@@ -22,6 +22,8 @@ const RAY_SAMPLED: u32 = 1u;
 const RAY_ANGULAR: u32 = 2u;
 const RAY_HEMISPHERICAL: u32 = 3u;
 const OUTLINE_SQUARE: u32 = 1u;
+const OUTLINE_FIELD: u32 = 2u;      // told by a field, whose number is in first_knot
+const FIELD_SIDE: u32 = 512u;       // texels
 
 struct RayEvent {
     distance: f32,              // D, metres
@@ -42,6 +44,7 @@ struct RayLenses {
 }
 
 @group(2) @binding(11) var<uniform> ray_lenses: RayLenses;
+@group(2) @binding(12) var ray_fields: texture_2d<f32>;     // one below the other, rows from low to high y
 
 // The line that what is looked at lies on.
 var<private> seen_ray: Ray;
@@ -60,7 +63,26 @@ struct Path {
 // How far a place of the picture is from the middle of a lens, in radii.
 fn rim_share(lens: u32, across: vec2f) -> f32 {
     let place = (across - ray_lenses.lenses[lens].center) / ray_lenses.lenses[lens].radius;
-    return select(length(place), max(abs(place.x), abs(place.y)), ray_lenses.lenses[lens].outline == OUTLINE_SQUARE);
+    let reach = max(abs(place.x), abs(place.y));
+    var share = select(length(place), reach, ray_lenses.lenses[lens].outline == OUTLINE_SQUARE);
+    if ray_lenses.lenses[lens].outline == OUTLINE_FIELD {
+        share = select(FAR_AWAY, field_share(ray_lenses.lenses[lens].first_knot, place), reach < 1.0);
+    }
+    return share;
+}
+
+// The share that a field has at a place, -1..1: between texels linearly.
+fn field_share(field: u32, place: vec2f) -> f32 {
+    let side = f32(FIELD_SIDE);
+    let at = clamp((0.5 * place + 0.5) * side - 0.5, vec2f(0.0), vec2f(side - 1.0));
+    let low = min(floor(at), vec2f(side - 2.0));
+    let share = at - low;
+    let texel = vec2u(low) + vec2u(0u, field * FIELD_SIDE);
+    let a = textureLoad(ray_fields, texel, 0).x;
+    let b = textureLoad(ray_fields, texel + vec2u(1u, 0u), 0).x;
+    let c = textureLoad(ray_fields, texel + vec2u(0u, 1u), 0).x;
+    let d = textureLoad(ray_fields, texel + vec2u(1u, 1u), 0).x;
+    return mix(mix(a, b, share.x), mix(c, d, share.x), share.y);
 }
 
 fn across_of_pixel(pixel: vec2f) -> vec2f {

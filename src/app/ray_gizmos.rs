@@ -10,7 +10,7 @@ use crate::{
         state::Window,
     },
     figure::scene_file::node::Data,
-    lens::ray::{Bend, RayLens, RayOutline, SamplingRate},
+    lens::ray::{Bend, Feature, RayLens, RayOutline, SamplingRate},
 };
 
 /// How much a point of the wheel magnifies, and how much wider it makes a border.
@@ -33,6 +33,10 @@ fn rounded(value: f64) -> f64 {
 impl Window {
     /// What can be held of a lens that bends rays: its middle, and of the chosen one its rim.
     pub(super) fn ray_gizmos(&self, index: usize, ray: &RayLens, rect: Rect, is_held: bool) -> Vec<Gizmo> {
+        if matches!(ray.bend, Bend::Feature(_)) {
+            // It stands where its feature is.
+            return Vec::new();
+        }
         let (middle, radius) = place_of(ray, rect);
         let gizmo = |kind, at| Gizmo { lens: index, shape: 0, kind, place: DVec3::ZERO, at };
         let mut all = vec![gizmo(GizmoKind::Middle, middle)];
@@ -83,7 +87,7 @@ impl Window {
         };
         let Some(ray) = lens.ray() else { return false };
         let (middle, radius) = place_of(ray, rect);
-        if at.distance(middle) > radius {
+        if at.distance(middle) > radius && !matches!(ray.bend, Bend::Feature(_)) {
             return false;
         }
         let is_alt = ui.input(|input| input.modifiers.alt);
@@ -94,7 +98,9 @@ impl Window {
                 let wider = magnify.border + BORDER_BY_WHEEL * f64::from(scroll);
                 ("border", Data::from(rounded(wider.clamp(0.0, 1.0))))
             }
-            Bend::Magnify(magnify) => ("magnification", Data::from(magnified(magnify.magnification))),
+            Bend::Magnify(magnify) | Bend::Feature(Feature { magnify, .. }) => {
+                ("magnification", Data::from(magnified(magnify.magnification)))
+            }
             Bend::Sample(sampling) => match sampling.rate {
                 SamplingRate::Cubic(middle) => ("magnification", Data::from(magnified(middle))),
                 SamplingRate::Points(_) => return false,

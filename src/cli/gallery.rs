@@ -42,6 +42,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "delft-route"
     "delft-streets"
     "den-haag-district"
+    "den-haag-feature"
     "den-haag-magnified"
     "den-haag-sphere"
     "den-haag-x-ray"

@@ -30,6 +30,7 @@ pub mod ray_path;
 pub mod region;
 pub mod relief;
 pub mod rendering;
+pub mod share_field;
 pub mod solids;
 pub mod source;
 pub mod sprite;

@@ -2,12 +2,14 @@
 
 use glam::DVec2;
 
+use crate::lens::chosen::Choice;
+
 /// What a lens that bends rays has of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RayLens {
     /// Its middle, shares of the picture's width and height, y down.
     pub center: DVec2,
-    /// From its middle to its rim, a share of the picture's height.
+    /// From its middle to its rim, a share of the picture's height; of a feature-based one how wide the band around its core is.
     pub radius: f64,
     /// Its outline in the picture.
     pub outline: RayOutline,
@@ -42,6 +44,8 @@ pub enum RayMethod {
 pub enum Bend {
     /// Behind a plane across the view axis what is seen through it is larger (Wang et al. §3.1).
     Magnify(Magnify),
+    /// The same, where its core is what rays to the focal point meet of a feature (Wang et al. §3.2).
+    Feature(Feature),
     /// Pixels lie closer together in its middle than at its rim (Wang et al. §3.3).
     Sample(Sampling),
     /// From the eye into all directions (Wang et al. §3.4).
@@ -59,6 +63,15 @@ pub struct Magnify {
     pub distance: Option<f64>,
     /// How wide the band is in which rays find back to where they would go, a share of the radius, 0..=1.
     pub border: f64,
+}
+
+/// What a feature-based lens does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Feature {
+    /// How it magnifies; its border says nothing.
+    pub magnify: Magnify,
+    /// The feature.
+    pub of: Choice,
 }
 
 /// What a sampling-rate lens does.
@@ -117,6 +130,12 @@ impl RayLens {
         Self::new(Bend::Magnify(Magnify { magnification: MAGNIFICATION, at: None, distance: None, border: 0.4 }))
     }
 
+    /// A feature-based lens of which nothing is said: of no feature.
+    pub fn feature() -> Self {
+        let magnify = Magnify { magnification: MAGNIFICATION, at: None, distance: None, border: 1.0 };
+        Self { radius: 0.1, ..Self::new(Bend::Feature(Feature { magnify, of: Choice::default() })) }
+    }
+
     /// A sampling-rate lens of which nothing is said.
     pub fn sampling() -> Self {
         Self::new(Bend::Sample(Sampling { rate: SamplingRate::Cubic(MAGNIFICATION) }))
@@ -126,6 +145,32 @@ impl RayLens {
     pub fn fisheye() -> Self {
         let bend = Fisheye { angle: std::f64::consts::PI, projection: FisheyeProjection::Angular };
         Self { radius: 0.5, ..Self::new(Bend::Fisheye(bend)) }
+    }
+}
+
+impl Bend {
+    /// How it magnifies behind a plane, if it does.
+    pub fn magnify(&self) -> Option<&Magnify> {
+        match self {
+            Self::Magnify(magnify) | Self::Feature(Feature { magnify, .. }) => Some(magnify),
+            Self::Sample(_) | Self::Fisheye(_) => None,
+        }
+    }
+
+    /// The same, to be changed.
+    pub fn magnify_mut(&mut self) -> Option<&mut Magnify> {
+        match self {
+            Self::Magnify(magnify) | Self::Feature(Feature { magnify, .. }) => Some(magnify),
+            Self::Sample(_) | Self::Fisheye(_) => None,
+        }
+    }
+
+    /// What a feature-based lens does, if it is one.
+    pub fn feature(&self) -> Option<&Feature> {
+        match self {
+            Self::Feature(feature) => Some(feature),
+            Self::Magnify(_) | Self::Sample(_) | Self::Fisheye(_) => None,
+        }
     }
 }
 

@@ -15,11 +15,17 @@
 //! where f has one, and of several lenses that a ray meets powers add: one that makes things smaller by as much undoes another one.
 //! The focal point lies on the line of sight through the lens' middle, not straight before it: what is in the middle stays there.
 
+use std::sync::Arc;
+
 use glam::{DQuat, DVec2, DVec3};
 
 use crate::{
     geom::{Shape, shape::FlatFigure},
-    lens::ray::{Bend, FisheyeProjection, RayLens, RayOutline, SampledRadius},
+    lens::{
+        chosen::Choice,
+        ray::{Bend, Feature, FisheyeProjection, Magnify, RayLens, RayOutline, SampledRadius},
+        share_field::{self, ShareField},
+    },
     view::{Camera, Projection},
 };
 
@@ -27,7 +33,7 @@ use crate::{
 pub const MOST_RAY_LENSES: usize = 8;
 
 /// The rim of a lens in the picture's plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Rim {
     /// Its middle.
     pub center: DVec2,
@@ -37,12 +43,18 @@ pub struct Rim {
     pub outline: RayOutline,
     /// The colour of the grid over it, sRGB; `None`: it has none.
     pub grid: Option<[f32; 3]>,
+    /// In place of an outline: how far its places are from a core.
+    pub field: Option<Arc<ShareField>>,
 }
 
 impl Rim {
     /// How far from the middle a place is, in radii.
     pub fn share(&self, across: DVec2) -> f64 {
         let from = (across - self.center) / self.radius;
+        if let Some(field) = &self.field {
+            // Beyond its square nothing is bent.
+            return if from.abs().max_element() < 1.0 { field.at(from) } else { f64::INFINITY };
+        }
         match self.outline {
             RayOutline::Circle => from.length(),
             RayOutline::Square => from.abs().max_element(),
@@ -51,7 +63,7 @@ impl Rim {
 }
 
 /// A lens with a plane across the view axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PlaneLens {
     /// Its number among the scene's.
     pub lens: u32,
@@ -152,8 +164,11 @@ impl PictureFrame {
         Self { half: camera.half_extent(size), is_parallel, near: camera.near_m }
     }
 
-    /// What is seen through a lens before it bends rays, in camera coordinates: a flat figure just before all that is seen.
-    pub fn figure(&self, lens: &RayLens) -> Shape {
+    /// What is seen through a lens before it bends rays, in camera coordinates: a flat figure just before all that is seen; `None`: it has no outline.
+    pub fn figure(&self, lens: &RayLens) -> Option<Shape> {
+        if matches!(lens.bend, Bend::Feature(_)) {
+            return None;
+        }
         let rim = self.rim(lens);
         let scale = if self.is_parallel { 1.0 } else { self.near };
         let radius = rim.radius * scale;
@@ -161,51 +176,43 @@ impl PictureFrame {
             RayOutline::Circle => FlatFigure::Disc { radius },
             RayOutline::Square => FlatFigure::Rectangle { size: DVec2::splat(2.0 * radius) },
         };
-        Shape::Flat { center: (scale * rim.center).extend(-self.near), rotation: DQuat::IDENTITY, figure }
+        Some(Shape::Flat { center: (scale * rim.center).extend(-self.near), rotation: DQuat::IDENTITY, figure })
     }
 
     /// Where the rim of a lens is.
     pub fn rim(&self, lens: &RayLens) -> Rim {
         let place = DVec2::new(2.0 * lens.center.x - 1.0, 1.0 - 2.0 * lens.center.y);
-        Rim { center: place * self.half, radius: lens.radius * 2.0 * self.half.y, outline: lens.outline, grid: None }
+        Rim {
+            center: place * self.half,
+            radius: lens.radius * 2.0 * self.half.y,
+            outline: lens.outline,
+            grid: None,
+            field: None,
+        }
     }
 }
 
 impl RayPaths {
-    /// The lenses of a picture. `lenses`: their numbers, bottom first, and their colours, sRGB; `shown`: D of what is seen at a place of the picture without them, metres.
-    pub fn new(
-        lenses: &[(u32, &RayLens, [f32; 3])],
-        frame: &PictureFrame,
-        shown: impl Fn(DVec2) -> Option<f64>,
-    ) -> Self {
+    /// The lenses of a picture. `lenses`: their numbers, bottom first, and their colours, sRGB.
+    pub fn new(lenses: &[(u32, &RayLens, [f32; 3])], frame: &PictureFrame, scenery: &Scenery) -> Self {
         let mut paths = Self { is_parallel: frame.is_parallel, ..Self::default() };
         for &(number, lens, color) in lenses {
             let rim = Rim { grid: lens.grid.then_some(color), ..frame.rim(lens) };
             if !(rim.radius > 0.0) {
                 continue;
             }
-            let image = |bend| ImageLens { lens: number, rim, bend };
+            let image = |rim, bend| ImageLens { lens: number, rim, bend };
             match &lens.bend {
                 Bend::Magnify(magnify) => {
-                    let middle = || shown(rim.center).unwrap_or(DISTANCE_M).max(frame.near);
-                    let (distance, depth) = match (magnify.distance, magnify.at) {
-                        (Some(distance), Some(at)) => (distance, at),
-                        (Some(distance), None) => (distance, (middle() - distance).max(0.5 * distance)),
-                        (None, Some(at)) => ((middle() - at).max(0.5 * at), at),
-                        (None, None) => (0.5 * middle(), 0.5 * middle()),
-                    };
-                    let e = if frame.is_parallel { 0.0 } else { distance.recip() };
-                    let power = (1.0 - magnify.magnification.recip()) * (1.0 + depth * e) / depth;
-                    if power != 0.0 {
-                        let (border, until) = (magnify.border, distance + depth);
-                        paths.planes.push(PlaneLens { lens: number, rim, border, distance, until, power });
-                    }
+                    let middle = || (scenery.shown)(rim.center).unwrap_or(DISTANCE_M);
+                    paths.planes.extend(PlaneLens::new(number, &rim, magnify, frame, middle));
                 }
+                Bend::Feature(feature) => paths.planes.extend(of_feature(number, &rim, feature, frame, scenery)),
                 Bend::Sample(sampling) => {
-                    paths.images.push(image(ImageBend::Sampled(SampledRadius::new(&sampling.rate))));
+                    paths.images.push(image(rim, ImageBend::Sampled(SampledRadius::new(&sampling.rate))));
                 }
                 Bend::Fisheye(fisheye) => {
-                    paths.images.push(image(ImageBend::Round(fisheye.angle, fisheye.projection)));
+                    paths.images.push(image(rim, ImageBend::Round(fisheye.angle, fisheye.projection)));
                 }
             }
         }
@@ -254,10 +261,9 @@ impl RayPaths {
         };
         // By the most that a plane takes from what is seen: where the ray goes on.
         let of_plane = |lens: &PlaneLens| {
-            let e = if self.is_parallel { 0.0 } else { lens.distance.recip() };
-            let depth = lens.until - lens.distance;
-            let taken = lens.power * depth / (1.0 + depth * e);
-            (lens.border > 0.0).then(|| 1.0 + taken.abs() / lens.border + taken.abs())
+            let taken = lens.taken(lens.until, self.is_parallel);
+            // A field's share grows by 1 over the band, not over the radius.
+            (lens.rim.field.is_none() && lens.border > 0.0).then(|| 1.0 + taken.abs() / lens.border + taken.abs())
         };
         let all = self.images.iter().map(of_image).chain(self.planes.iter().map(of_plane));
         all.reduce(|a, b| Some(a? * b?)).unwrap_or(Some(1.0))
@@ -363,6 +369,85 @@ impl RayPaths {
     }
 }
 
+/// What lenses that bend rays ask of a city.
+pub struct Scenery<'a> {
+    /// D of what is seen at a place of the picture without them, metres; `None`: nothing.
+    pub shown: &'a dyn Fn(DVec2) -> Option<f64>,
+    /// The triangles of a choice, view space.
+    pub feature: &'a dyn Fn(&Choice) -> Vec<[DVec3; 3]>,
+}
+
+impl PlaneLens {
+    /// A magnifier; `None`: it changes nothing. `middle`: D of what it is about, metres.
+    fn new(lens: u32, rim: &Rim, magnify: &Magnify, frame: &PictureFrame, middle: impl Fn() -> f64) -> Option<Self> {
+        let middle = || middle().max(frame.near);
+        let (distance, depth) = match (magnify.distance, magnify.at) {
+            (Some(distance), Some(at)) => (distance, at),
+            (Some(distance), None) => (distance, (middle() - distance).max(0.5 * distance)),
+            (None, Some(at)) => ((middle() - at).max(0.5 * at), at),
+            (None, None) => (0.5 * middle(), 0.5 * middle()),
+        };
+        let e = if frame.is_parallel { 0.0 } else { distance.recip() };
+        let power = (1.0 - magnify.magnification.recip()) * (1.0 + depth * e) / depth;
+        let (border, until, rim) = (magnify.border, distance + depth, rim.clone());
+        (power != 0.0).then_some(Self { lens, rim, border, distance, until, power })
+    }
+
+    /// The part that its core takes from what is seen at D.
+    fn taken(&self, d: f64, is_parallel: bool) -> f64 {
+        let e = if is_parallel { 0.0 } else { self.distance.recip() };
+        let z = d.min(self.until) - self.distance;
+        z * self.power / (1.0 + z * e)
+    }
+
+    /// Where its core shows a place of view space behind its plane, in the picture's plane.
+    fn shown_by_core(&self, p: DVec3, is_parallel: bool) -> DVec2 {
+        let seen = p.truncate() / if is_parallel { 1.0 } else { -p.z };
+        self.rim.center + (seen - self.rim.center) / (1.0 - self.taken(-p.z, is_parallel))
+    }
+}
+
+/// A lens whose core is where rays to its focal point meet a feature, and whose band goes around that; `None`: the feature is not behind its plane.
+fn of_feature(number: u32, rim: &Rim, feature: &Feature, frame: &PictureFrame, scenery: &Scenery) -> Option<PlaneLens> {
+    let triangles = (scenery.feature)(&feature.of);
+    let is_parallel = frame.is_parallel;
+    let seen = |p: &DVec3| p.truncate() / if is_parallel { 1.0 } else { -p.z };
+    let corners = || triangles.iter().flatten().filter(|p| -p.z > frame.near);
+    let bounds = |all: &mut dyn Iterator<Item = DVec2>| {
+        all.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
+    };
+    let (low, high) = bounds(&mut corners().map(seen));
+    let depths = corners().map(|p| -p.z).fold((f64::INFINITY, 0.0_f64), |(low, high), d| (low.min(d), high.max(d)));
+    if !(low.is_finite() && high.is_finite()) {
+        return None;
+    }
+    // The focal point lies on the line of sight through its middle.
+    let band = rim.radius;
+    let rim = Rim { center: 0.5 * (low + high), ..rim.clone() };
+    let magnify = Magnify { border: 1.0, ..feature.magnify };
+    let mut lens = PlaneLens::new(number, &rim, &magnify, frame, || 0.5 * (depths.0 + depths.1))?;
+    let ranges = [[lens.distance.max(frame.near), lens.until], [lens.until, f64::INFINITY]];
+    let parts: Vec<Vec<DVec2>> = triangles
+        .iter()
+        .flat_map(|triangle| ranges.map(|range| share_field::between(*triangle, range)))
+        .filter(|part| !part.is_empty())
+        .map(|part| part.into_iter().map(|p| lens.shown_by_core(p, is_parallel)).collect())
+        .collect();
+    let (low, high) = bounds(&mut parts.iter().flatten().copied());
+    let reach = (low - rim.center).abs().max((high - rim.center).abs()).max_element() + band;
+    if !reach.is_finite() {
+        return None;
+    }
+    let mut core = vec![false; share_field::SIDE * share_field::SIDE];
+    for part in &parts {
+        let placed: Vec<DVec2> = part.iter().map(|p| (*p - rim.center) / reach).collect();
+        share_field::mark(&mut core, &placed);
+    }
+    let field = Some(Arc::new(ShareField::of_core(&core, band / reach)));
+    lens.rim = Rim { radius: reach, field, outline: RayOutline::Square, ..rim };
+    Some(lens)
+}
+
 /// D of what is seen where nothing is, metres.
 const DISTANCE_M: f64 = 100.0;
 
@@ -371,10 +456,14 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::lens::ray::{Fisheye, Magnify, Sampling, SamplingRate};
+    use crate::lens::ray::{Fisheye, Sampling, SamplingRate};
 
     fn frame(is_parallel: bool) -> PictureFrame {
-        PictureFrame { half: if is_parallel { DVec2::new(80.0, 50.0) } else { DVec2::new(0.8, 0.5) }, is_parallel, near: 0.5 }
+        PictureFrame {
+            half: if is_parallel { DVec2::new(80.0, 50.0) } else { DVec2::new(0.8, 0.5) },
+            is_parallel,
+            near: 0.5,
+        }
     }
 
     fn magnifier(magnification: f64, at: f64, distance: f64, border: f64) -> RayLens {
@@ -384,7 +473,7 @@ mod tests {
 
     fn paths(lenses: &[RayLens], is_parallel: bool) -> RayPaths {
         let numbered: Vec<_> = (0..).zip(lenses).map(|(number, lens)| (number, lens, [0.0; 3])).collect();
-        RayPaths::new(&numbered, &frame(is_parallel), |_| None)
+        RayPaths::new(&numbered, &frame(is_parallel), &Scenery { shown: &|_| None, feature: &|_| Vec::new() })
     }
 
     /// Where the path of a place is at a distance, as the picture without lenses has it.
@@ -523,7 +612,11 @@ mod tests {
         let plane = |at, distance| {
             let bend = Bend::Magnify(Magnify { magnification: 2.0, at, distance, border: 0.4 });
             let lens = RayLens { bend, ..RayLens::magnifier() };
-            let paths = RayPaths::new(&[(3, &lens, [0.0; 3])], &frame(false), |_| Some(100.0));
+            let paths = RayPaths::new(
+                &[(3, &lens, [0.0; 3])],
+                &frame(false),
+                &Scenery { shown: &|_| Some(100.0), feature: &|_| Vec::new() },
+            );
             (paths.planes[0].lens, paths.planes[0].distance, paths.planes[0].until)
         };
         assert_eq!(plane(None, None), (3, 50.0, 100.0));
@@ -559,9 +652,7 @@ mod tests {
         ] {
             let lens = RayLens { bend: Bend::Fisheye(Fisheye { angle, projection }), ..RayLens::fisheye() };
             let paths = paths(std::slice::from_ref(&lens), false);
-            let direction = |share: f64, turn: f64| {
-                paths.line(0.5 * share * DVec2::from_angle(turn), 1.0).direction
-            };
+            let direction = |share: f64, turn: f64| paths.line(0.5 * share * DVec2::from_angle(turn), 1.0).direction;
             assert_eq!(direction(0.0, 0.0), DVec3::NEG_Z);
             // Beside the middle as the limit says.
             let slope = if projection == FisheyeProjection::Angular { 0.5 * angle } else { (0.5 * angle).sin() };

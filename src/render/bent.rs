@@ -6,6 +6,7 @@ use crate::{
     lens::{
         ray::{FisheyeProjection, RayOutline, SAMPLED_KNOTS},
         ray_path::{ImageBend, MOST_RAY_LENSES, RayPaths, Rim},
+        share_field::ShareField,
     },
     render::{eye::PictureTile, layout, palette, screen_bound::ScreenBound},
     view::View,
@@ -67,6 +68,7 @@ pub(super) fn uniform(paths: &RayPaths) -> layout::RayLenses {
             }
         }
     }
+    let mut fields = 0;
     for (lens, own) in made.lenses[images..].iter_mut().zip(&paths.planes) {
         *lens = layout::RayLens {
             border: own.border as f32,
@@ -76,14 +78,17 @@ pub(super) fn uniform(paths: &RayPaths) -> layout::RayLenses {
             kind: layout::RAY_PLANE,
             ..of_rim(&own.rim)
         };
+        if own.rim.field.is_some() {
+            (lens.outline, lens.first_knot) = (layout::OUTLINE_FIELD, fields);
+            fields += 1;
+        }
     }
     made.stretch = paths.stretch().map_or(FAR_AWAY, |stretch| stretch as f32);
     let events = paths.events();
     made.events = events.len().min(made.along.len()) as u32;
     for (slot, event) in made.along.iter_mut().zip(&events) {
         let lens = (images + event.plane) as u32;
-        *slot =
-            layout::RayEvent { distance: event.distance as f32, lens, ends: u32::from(event.ends), reserved: 0 };
+        *slot = layout::RayEvent { distance: event.distance as f32, lens, ends: u32::from(event.ends), reserved: 0 };
     }
     made
 }
@@ -97,4 +102,9 @@ fn of_rim(rim: &Rim) -> layout::RayLens {
         color: rim.grid.map_or([0.0; 3], palette::linear),
         ..bytemuck::Zeroable::zeroed()
     }
+}
+
+/// The fields of lenses that have some, one below the other: texels of a picture of [`SIDE`] across.
+pub(super) fn fields(paths: &RayPaths) -> Vec<&ShareField> {
+    paths.planes.iter().filter_map(|lens| lens.rim.field.as_deref()).collect()
 }

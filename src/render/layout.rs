@@ -353,6 +353,8 @@ pub struct RayLens {
     pub grid: f32,
 }
 
+/// `lib/bent-rays.wgsl`: of a lens that has a field in place of an outline.
+pub const OUTLINE_FIELD: u32 = 2;
 /// `lib/bent-rays.wgsl`: kinds of lenses that bend rays.
 pub const RAY_PLANE: u32 = 0;
 /// `lib/bent-rays.wgsl`.
@@ -696,39 +698,45 @@ mod tests {
                     pad_0,
                 }),
             ),
-            (&rays, host!(RayLens {
-                center,
-                radius,
-                border,
-                distance,
-                until,
-                power,
-                kind,
-                outline,
-                first_knot,
-                knots,
-                angle,
-                color,
-                grid
-            })),
+            (
+                &rays,
+                host!(RayLens {
+                    center,
+                    radius,
+                    border,
+                    distance,
+                    until,
+                    power,
+                    kind,
+                    outline,
+                    first_knot,
+                    knots,
+                    angle,
+                    color,
+                    grid
+                }),
+            ),
             (&rays, host!(RayEvent { distance, lens, ends, reserved })),
             (&rays, host!(RayLenses { images, planes, events, stretch, lenses, along, knots })),
-            (&rays, host!(RayCity {
-                from_view_x,
-                from_view_y,
-                from_view_z,
-                eye,
-                surfaces,
-                eye_fraction,
-                number,
-                eye_in_boxes,
-                boxes,
-                triangles,
-                pad_0,
-                world_x,
-                world_y,
-                world_z
-            })),
+            (
+                &rays,
+                host!(RayCity {
+                    from_view_x,
+                    from_view_y,
+                    from_view_z,
+                    eye,
+                    surfaces,
+                    eye_fraction,
+                    number,
+                    eye_in_boxes,
+                    boxes,
+                    triangles,
+                    pad_0,
+                    world_x,
+                    world_y,
+                    world_z
+                }),
+            ),
             (&cut, host!(City { linear, from_whole, number, from_fraction, first_surface, to, scale })),
             (
                 &shade,

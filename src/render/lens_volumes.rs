@@ -77,8 +77,8 @@ pub(super) fn volumes_of<'a>(drawn: &'a Drawn, eye: &Eye, tools: &mut Tools<'a>)
         let motion = eye.motion(lens, scene, city.model);
         let place = Place { motion: motion.unwrap_or(Motion::NONE), sight: eye.sight() };
         let mut of_lens: Vec<PlacedRegion> = Vec::new();
-        let of_rays = lens.ray().map(|ray| [Region::Shape(tools.frame.figure(ray))]);
-        for (j, region) in of_rays.iter().flatten().chain(&lens.shapes).enumerate() {
+        let of_rays = lens.ray().and_then(|ray| tools.frame.figure(ray)).map(Region::Shape);
+        for (j, region) in of_rays.iter().chain(&lens.shapes).enumerate() {
             match regions_of(region, &place, tools) {
                 Ok(mut placed) => {
                     let fades = lens.soft_border().is_some() && !ends_along_rays(lens);

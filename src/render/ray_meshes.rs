@@ -112,8 +112,16 @@ impl RayMeshes {
     /// Nothing yet.
     pub fn new(gpu: &Gpu) -> Result<Self, GpuError> {
         let advice = "a smaller city, or no lens that bends rays";
-        let words = Room::new(gpu, "triangles of rays", wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST, advice)?;
-        Ok(Self { meshes: Vec::new(), words, begins: Vec::new(), standing: Vec::new(), triangles: 0, images: Vec::new() })
+        let words =
+            Room::new(gpu, "triangles of rays", wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST, advice)?;
+        Ok(Self {
+            meshes: Vec::new(),
+            words,
+            begins: Vec::new(),
+            standing: Vec::new(),
+            triangles: 0,
+            images: Vec::new(),
+        })
     }
 
     /// Makes them those of what a frame draws; `true`: the buffer is another one now.
@@ -175,7 +183,9 @@ impl RayMeshes {
             let at = *offset as usize;
             let own: layout::City = match placed.get(at..at + size_of::<layout::City>()) {
                 Some(bytes) => bytemuck::pod_read_unaligned(bytes),
-                None => layout::City { scale: 1.0, linear: columns(DMat3::IDENTITY, 0.0), ..bytemuck::Zeroable::zeroed() },
+                None => {
+                    layout::City { scale: 1.0, linear: columns(DMat3::IDENTITY, 0.0), ..bytemuck::Zeroable::zeroed() }
+                }
             };
             let column = |c: [f32; 4]| DVec3::new(c[0].into(), c[1].into(), c[2].into());
             let linear = DMat3::from_cols(column(own.linear[0]), column(own.linear[1]), column(own.linear[2]));
@@ -246,7 +256,10 @@ fn groups_of<'a>(drawn: &[DrawnSection<'a>]) -> Vec<Group<'a>> {
 fn images_of(group: &Group, city: u32) -> Vec<(u32, RayImages)> {
     let of = |(number, (drawn, _)): (u32, &(DrawnSection, Vec<&Chunk>))| {
         let images = drawn.section.kind.images().filter(|images| !images.facade)?;
-        Some((city << SECTION_SHIFT | number, RayImages { group: drawn.image?.by_level.clone(), emits: images.emission != NONE }))
+        Some((
+            city << SECTION_SHIFT | number,
+            RayImages { group: drawn.image?.by_level.clone(), emits: images.emission != NONE },
+        ))
     };
     (1..).zip(&group.parts).take(MOST_SECTIONS).filter_map(of).collect()
 }
@@ -273,7 +286,8 @@ impl Mesh {
             .map(|(drawn, _)| Ok((Source::read(gpu, drawn.section)?, planes_of(gpu, drawn.section)?)))
             .collect();
         let sources = sources?;
-        let parts = || group.parts.iter().zip(&sources).zip(&of).map(|(((drawn, _), source), (_, runs))| (drawn, source, runs));
+        let parts =
+            || group.parts.iter().zip(&sources).zip(&of).map(|(((drawn, _), source), (_, runs))| (drawn, source, runs));
         let mut bounds = Aabb::EMPTY;
         for (_, (source, _), runs) in parts() {
             for run in runs {
@@ -365,7 +379,8 @@ impl Made<'_> {
         }
         if let Some(images) = drawn.section.kind.images() {
             kind |= PLACED | if images.facade { FACADE } else { number.min(MOST_SECTIONS as u32) << SECTION_SHIFT };
-            let [a, b, c] = indices.map(|i| source.texcoords.get(i as usize).copied().unwrap_or_default().map(f32::to_bits));
+            let [a, b, c] =
+                indices.map(|i| source.texcoords.get(i as usize).copied().unwrap_or_default().map(f32::to_bits));
             rest.extend([[a[0], a[1], b[0], b[1]], [c[0], c[1], 0, 0]]);
         }
         let corners = indices.map(|i| grid(source.place(i)));

@@ -9,8 +9,9 @@ use crate::{
     city::{CityModel, lifetime::Lifetimes, load::LoadOptions, spatial::SpatialIndex},
     geom::Aabb,
     lens::{
+        chosen::{Choice, members},
         ray::RayLens,
-        ray_path::{MOST_RAY_LENSES, PictureFrame, RayPaths},
+        ray_path::{MOST_RAY_LENSES, PictureFrame, RayPaths, Scenery},
         solids::{ShownCity, Solids},
     },
     render::{
@@ -187,7 +188,24 @@ impl Surroundings<'_> {
             let index = self.city.index.get_or_init(|| SpatialIndex::build(self.city.model, self.city.geometries));
             Some(index.hit(self.city.model, &view.ray(pixel))?.t)
         };
-        Ok(RayPaths::new(&lenses, &frame, shown))
+        let feature = |choice: &Choice| self.triangles_of(choice, view);
+        Ok(RayPaths::new(&lenses, &frame, &Scenery { shown: &shown, feature: &feature }))
+    }
+
+    /// The triangles of the objects that are shown and that a choice means, view space.
+    fn triangles_of(&self, choice: &Choice, view: &View) -> Vec<[DVec3; 3]> {
+        let model = self.city.model;
+        let members = members(model, choice);
+        let to_view = view.basis.view_from_world();
+        let geometries = self.city.geometries.iter().map(|&g| &model.geometries[g as usize]);
+        let tiles = geometries.filter(|g| members.get(g.object as usize) == Some(&true)).flat_map(|g| g.tiles.clone());
+        let of_tile = |t: u32| {
+            let tile = &model.tiles[t as usize];
+            let indices = &model.indices[tile.indices.start as usize..tile.indices.end as usize];
+            let corner = move |i: u32| to_view * (model.position(tile, tile.vertices.start + i) - view.camera.eye);
+            indices.chunks_exact(3).map(move |corners| [corner(corners[0]), corner(corners[1]), corner(corners[2])])
+        };
+        tiles.flat_map(of_tile).collect()
     }
 
     /// The volumes of a scene's enabled lenses.

@@ -12,6 +12,7 @@ use crate::{
         layout,
         light::{self, Surround},
         plan::FramePlan,
+        ray_fields::RayFields,
         resource::{
             bindings::{all_of, group, one_of, whole},
             layouts::{CUT_CITY, LENSES, PLANES, SHADE, VIEW},
@@ -47,8 +48,9 @@ pub(super) struct Shared {
     pub invokers: Synced,
     pub tile_lists: Synced,
     pub object_values: Synced,
-    /// The lenses that bend rays.
+    /// The lenses that bend rays, and what some of them have in place of an outline.
     pub ray_lenses: Synced,
+    pub ray_fields: RayFields,
     /// The scene's own city and contents, for the main view.
     pub cities: Synced,
     /// How many samples there are.
@@ -105,6 +107,7 @@ impl Shared {
             tile_lists: storage("invokers of tiles")?,
             object_values: storage("object values")?,
             ray_lenses: uniform("lenses that bend rays")?,
+            ray_fields: RayFields::new(gpu),
             cities: uniform("cities")?,
             samples: uniform("resolve")?,
             mesh: Synced::new(gpu, "parts of the picture", U::VERTEX)?,
@@ -164,6 +167,7 @@ impl Shared {
         stale |= self.parameters.sync(gpu, &parameters(plan, is_uber))?;
         stale |= self.object_values.sync(gpu, &input.operations.object_values)?;
         stale |= self.ray_lenses.sync(gpu, &[bent::uniform(input.rays)])?;
+        stale |= self.ray_fields.fit(gpu, &bent::fields(input.rays));
         stale |= self.samples.sync(gpu, &[input.samples as f32])?;
         self.mesh.sync(gpu, &plan.parts.mesh.corners)?;
         self.stamp += u64::from(stale);
@@ -220,6 +224,7 @@ impl Shared {
                     (9, whole(self.invokers.buffer())),
                     (10, whole(self.sprites.buffer())),
                     (11, whole(self.ray_lenses.buffer())),
+                    (12, wgpu::BindingResource::TextureView(&self.ray_fields.view)),
                 ],
             ),
             cut_city: made(

@@ -178,16 +178,12 @@ fn white(gpu: &Gpu) -> SampledTexture {
     let texture = gpu.texture("no texture", [1, 1, 1], 1, wgpu::TextureFormat::Rgba8Unorm, usage);
     gpu.write_texture_level(&texture, 0, &[u8::MAX; 4]);
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor { label: Some("no texture"), ..Default::default() });
+    let sampler =
+        gpu.device.create_sampler(&wgpu::SamplerDescriptor { label: Some("no texture"), ..Default::default() });
     SampledTexture { view, by_level: sampler.clone(), sampler }
 }
 
-fn upload(
-    gpu: &Gpu,
-    pixels: &texture::Pixels,
-    declared: &Texture,
-    format: wgpu::TextureFormat,
-) -> SampledTexture {
+fn upload(gpu: &Gpu, pixels: &texture::Pixels, declared: &Texture, format: wgpu::TextureFormat) -> SampledTexture {
     let size = [pixels.width, pixels.height, 1];
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = gpu.texture("city texture", size, pixels.levels.len() as u32, format, usage);
@@ -201,15 +197,15 @@ fn upload(
     };
     let sampler = |anisotropy_clamp: u16| {
         gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("city texture"),
-        address_mode_u: mode(declared.wrap[0]),
-        address_mode_v: mode(declared.wrap[1]),
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        anisotropy_clamp,
-        ..Default::default()
-    })
+            label: Some("city texture"),
+            address_mode_u: mode(declared.wrap[0]),
+            address_mode_v: mode(declared.wrap[1]),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            anisotropy_clamp,
+            ..Default::default()
+        })
     };
     let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
     SampledTexture { view, sampler: sampler(8), by_level: sampler(1) }

@@ -109,6 +109,16 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
             }));
         }
     }
+    for (i, lens) in scene.lenses.iter().enumerate() {
+        let feature = lens.ray().and_then(|ray| ray.bend.feature());
+        let named = feature.into_iter().flat_map(|feature| absent(model, &feature.of));
+        problems.extend(named.map(|(key, message)| SceneProblem {
+            table: format!("lens.{i}"),
+            is_error: key == "attribute",
+            key: format!("ray.of.{key}"),
+            message: format!("chooses nothing: {message}"),
+        }));
+    }
     for (i, poi) in scene.pois.iter().enumerate() {
         let PoiPlace::Object(id) = &poi.place else { continue };
         if model.find_object(id).is_none() {

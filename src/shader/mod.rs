@@ -48,8 +48,8 @@ pub use carried::LEAST_CARRIED;
 pub use deforming::{DEFORMER_NUMBERS, DeformPlan, PlanControl, PlanDeformer, PlanStep, STEP_HEAD};
 pub use effect::{EffectDefinition, EffectKind, Mode, PerObject, effects, handlers};
 pub use forward::{Forward, ForwardKind};
-pub use module::Module;
 pub use lining::BENT_PARTS;
+pub use module::Module;
 pub use plan::{
     Bends, Plan,
     content::{Clip, MOST_CITIES, PlanContent},

@@ -13,11 +13,12 @@ use crate::{
         geometry::{self, Drawn, NOTHING_CUT},
         hiding::{self, Eye},
         library::{
-            AMBIENT_OCCLUSION, BARE, BENT_EDGES, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS, CROSSING, CUT, DEFORM,
-            DEPTH_CODE, FACADE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File, GEOMETRY, HELD, HELD_LAYERS,
-            HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED, RAY_GRID, RAY_IMAGES, RAY_LAYERS, RAY_WALK, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
-            SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS,
-            STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
+            AMBIENT_OCCLUSION, BARE, BENT_EDGES, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS,
+            CROSSING, CUT, DEFORM, DEPTH_CODE, FACADE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File,
+            GEOMETRY, HELD, HELD_LAYERS, HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED,
+            RAY_GRID, RAY_IMAGES, RAY_LAYERS, RAY_WALK, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW,
+            SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS,
+            SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
         lining,
         plan::{Bends, Plan, form::Form, lens_test::LensTest, program::Program},
@@ -177,7 +178,9 @@ impl Module {
             }
             Self::Rays(program, _) => {
                 let asked = program.as_ref().map(|p| (hidden(p, Eye::Rays), p.has().has_cities()));
-                text.fill("handlers", followed::source(asked)).fill("met", followed::FIRST).fill("bindings", followed::LAST_GROUP)
+                text.fill("handlers", followed::source(asked))
+                    .fill("met", followed::FIRST)
+                    .fill("bindings", followed::LAST_GROUP)
             }
             Self::RayImages(_) => text
                 .fill("handlers", followed::source(None))
@@ -205,9 +208,11 @@ impl Module {
     /// Whether its rays are those that lenses bend.
     fn bends(&self) -> Bends {
         match self {
-            Self::Shade(program) | Self::Composite(program) | Self::Layers(program, _) | Self::RayLayers(program) | Self::Lines(program) => {
-                program.has().bends
-            }
+            Self::Shade(program)
+            | Self::Composite(program)
+            | Self::Layers(program, _)
+            | Self::RayLayers(program)
+            | Self::Lines(program) => program.has().bends,
             Self::Rays(_, bends) | Self::RayImages(bends) => *bends,
             _ => Bends::default(),
         }

@@ -1,9 +1,12 @@
 //! Rays of pixels: what their handlers say.
 
-use crate::shader::{plan::Bends, effect::{
-    prototype::{EffectKind, Mode},
-    registry::handlers,
-}};
+use crate::shader::{
+    effect::{
+        prototype::{EffectKind, Mode},
+        registry::handlers,
+    },
+    plan::Bends,
+};
 
 /// The filling of the hook `ray` (`lib/view.wgsl`): `ray_of_pixel`, and `see_pixel`, which is told before which pixel is looked at, and how far; of rays
 /// that are bent `lib/bent-rays.wgsl` has both.

@@ -362,7 +362,8 @@ impl Reference {
         let of_picture = pixel / DVec2::from(view.size.map(f64::from));
         let place = DVec2::new(2.0 * of_picture.x - 1.0, 1.0 - 2.0 * of_picture.y) * view.half_extent();
         let to_world = view.basis.view_from_world().transpose();
-        let placed = |(range, origin, direction): Piece| (range, view.camera.eye + to_world * origin, to_world * direction);
+        let placed =
+            |(range, origin, direction): Piece| (range, view.camera.eye + to_world * origin, to_world * direction);
         path(bent, place, view.is_orthographic()).into_iter().map(placed).collect()
     }
 
@@ -417,7 +418,9 @@ impl Reference {
     fn picture(&self, view: &View, beside: f64) -> Vec<[Seen; 5]> {
         let [w, h] = size();
         let offsets = [[0.0, 0.0], [-beside, -beside], [beside, -beside], [-beside, beside], [beside, beside]];
-        let lines_of = |x: u32, y: u32, [i, j]: [f64; 2]| self.lines(view, DVec2::new(f64::from(x) + 0.5 + i, f64::from(y) + 0.5 + j));
+        let lines_of = |x: u32, y: u32, [i, j]: [f64; 2]| {
+            self.lines(view, DVec2::new(f64::from(x) + 0.5 + i, f64::from(y) + 0.5 + j))
+        };
         // The pixels that a face may be in, along x and y.
         let spans = |face: &Face| {
             // What crosses the eye's plane may be anywhere.
@@ -442,7 +445,9 @@ impl Reference {
                 let face = &self.faces[number];
                 for x in across.clone() {
                     let lines = rays[x as usize].iter().enumerate();
-                    for (k, ([begin, end], origin, direction)) in lines.flat_map(|(k, all)| all.iter().map(move |l| (k, l))) {
+                    for (k, ([begin, end], origin, direction)) in
+                        lines.flat_map(|(k, all)| all.iter().map(move |l| (k, l)))
+                    {
                         let Some((t, u, v)) = hit(*origin, *direction, &face.shown) else { continue };
                         if t < *begin || t > *end {
                             continue;

@@ -5,10 +5,9 @@ use rayon::prelude::*;
 use veduta::{
     lens::{
         Lens, LensBody, LensKind,
-        kind::{FisheyeLens, Magnifier, SamplingLens},
-        ray::{
-            Bend, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate,
-        },
+        chosen::Choice,
+        kind::{FeatureLens, FisheyeLens, Magnifier, SamplingLens},
+        ray::{Bend, Feature, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate},
     },
     render::{
         frame::Backend,
@@ -26,6 +25,8 @@ const SIZE: [u32; 2] = [96, 64];
 const USUAL: u64 = 12_000;
 /// How far from an edge's image an object may be another one, pixels.
 const BESIDE_PX: f64 = 1e-3;
+/// The same where no ray is bent: a rasteriser rounds corners to 1/256 of a pixel.
+const RASTER_PX: f64 = 2.0 / 256.0;
 /// How far depths may be outside of those that the rays around have, of themselves: what f32 rounds of places and slopes.
 const DEPTH_OFF: f64 = 2e-6;
 
@@ -41,7 +42,12 @@ pub struct Bent {
 #[derive(Clone, Debug)]
 enum What {
     /// Equation 1: a plane at `z_l`, its focal point at `f` behind it, a border, and the depth from which on rays go as the eye sees.
-    Magnifier { z_l: f64, f: f64, border: f64, z_m: f64 },
+    Magnifier {
+        z_l: f64,
+        f: f64,
+        border: f64,
+        z_m: f64,
+    },
     /// Equation 3.
     Sampling(SamplingRate),
     Fisheye(f64, FisheyeProjection),
@@ -61,6 +67,7 @@ impl Bent {
             }
             Bend::Sample(Sampling { rate }) => What::Sampling(rate.clone()),
             Bend::Fisheye(Fisheye { angle, projection }) => What::Fisheye(*angle, *projection),
+            Bend::Feature(_) => panic!("it has no rim"),
         };
         Self { center, radius: lens.radius * 2.0 * half.y, is_square: lens.outline == RayOutline::Square, what }
     }
@@ -73,12 +80,48 @@ impl Bent {
 /// A piece of a ray: from where to where in its parameter, where it begins and goes, view space.
 pub type Piece = ([f64; 2], DVec3, DVec3);
 
-/// The path of the ray of a place of the picture through one lens.
-pub fn path(lens: &Bent, place: DVec2, is_parallel: bool) -> Vec<Piece> {
-    let own = |place: DVec2| match is_parallel {
+/// Where the ray of a place of the picture begins, and where it goes.
+fn plain_ray(place: DVec2, is_parallel: bool) -> (DVec3, DVec3) {
+    match is_parallel {
         true => (place.extend(0.0), DVec3::NEG_Z),
         false => (DVec3::ZERO, place.extend(-1.0)),
-    };
+    }
+}
+
+/// A plane that bends rays (equation 1).
+struct Plane {
+    center: DVec2,
+    z_l: f64,
+    f: f64,
+    z_m: f64,
+}
+
+impl Plane {
+    /// The path of a place's ray, where the border has come to `k`.
+    fn path(&self, place: DVec2, k: f64, is_parallel: bool) -> Vec<Piece> {
+        let Self { center, z_l, f, z_m } = *self;
+        let (origin, direction) = plain_ray(place, is_parallel);
+        let on_plane = origin + z_l * direction;
+        // The focal point, on the line of sight through the lens' middle; and where the ray would meet its plane.
+        let (middle_origin, middle_direction) = plain_ray(center, is_parallel);
+        let focus = middle_origin + (z_l + f) * middle_direction;
+        let undisturbed = origin + (z_l + f) * direction;
+        let target = focus + k * (undisturbed - focus);
+        let slope = (target - on_plane) / f;
+        let reached = on_plane + z_m * slope;
+        let end = z_l + z_m;
+        let on = if is_parallel { DVec3::NEG_Z } else { reached / end };
+        vec![
+            ([0.0, z_l], origin, direction),
+            ([z_l, end], on_plane - z_l * slope, slope),
+            ([end, f64::INFINITY], reached - end * on, on),
+        ]
+    }
+}
+
+/// The path of the ray of a place of the picture through one lens.
+pub fn path(lens: &Bent, place: DVec2, is_parallel: bool) -> Vec<Piece> {
+    let own = |place| plain_ray(place, is_parallel);
     let (origin, direction) = own(place);
     let from = place - lens.center;
     let r = lens.radius_at(from);
@@ -88,21 +131,7 @@ pub fn path(lens: &Bent, place: DVec2, is_parallel: bool) -> Vec<Piece> {
     match &lens.what {
         What::Magnifier { z_l, f, border, z_m } => {
             let k = if *border > 0.0 { ((r - (lens.radius - border)) / border).clamp(0.0, 1.0) } else { 0.0 };
-            let on_plane = origin + z_l * direction;
-            // The focal point, on the line of sight through the lens' middle; and where the ray would meet its plane.
-            let (middle_origin, middle_direction) = own(lens.center);
-            let focus = middle_origin + (z_l + f) * middle_direction;
-            let undisturbed = origin + (z_l + f) * direction;
-            let target = focus + k * (undisturbed - focus);
-            let slope = (target - on_plane) / f;
-            let reached = on_plane + z_m * slope;
-            let end = z_l + z_m;
-            let on = if is_parallel { DVec3::NEG_Z } else { reached / end };
-            vec![
-                ([0.0, *z_l], origin, direction),
-                ([*z_l, end], on_plane - z_l * slope, slope),
-                ([end, f64::INFINITY], reached - end * on, on),
-            ]
+            Plane { center: lens.center, z_l: *z_l, f: *f, z_m: *z_m }.path(place, k, is_parallel)
         }
         What::Sampling(rate) => {
             // The integral by many small steps.
@@ -235,9 +264,7 @@ fn compare(studio: &mut Studio, camera: Camera, lens: &Lens, size: [u32; 2]) -> 
     let [w, h] = size.map(f64::from);
     let (ids, depths) = (picture.object_id.expect("ids"), picture.depth.expect("depths"));
     let place = |pixel: DVec2| DVec2::new((2.0 * pixel.x / w - 1.0) * half.x, (1.0 - 2.0 * pixel.y / h) * half.y);
-    let met = |pixel: DVec2| {
-        first(&faces, &path(&reference, place(pixel), view.is_orthographic()), camera.near_m)
-    };
+    let met = |pixel: DVec2| first(&faces, &path(&reference, place(pixel), view.is_orthographic()), camera.near_m);
     let of_pixel = |i: usize| {
         let pixel = DVec2::new((i % size[0] as usize) as f64 + 0.5, (i / size[0] as usize) as f64 + 0.5);
         let from = place(pixel) - reference.center;
@@ -284,4 +311,97 @@ fn what_bent_rays_show_is_what_a_slow_caster_says() {
         }
     }
     println!("{compared} pixels\n{}", rows.join("\n"));
+}
+
+#[test]
+fn a_feature_is_magnified_where_rays_to_its_focal_point_meet_it() {
+    let mut studio = studio::synthetic(40);
+    let size = [240, 160];
+    let mut compared = [0; 3];
+    for (camera, band) in cameras(&studio).into_iter().zip([0.12, 0.2, 0.06]) {
+        let faces_of = |studio: &Studio, view: &View| -> Vec<Face> {
+            let to_view = view.basis.view_from_world();
+            let face =
+                |t: studio::Triangle| Face { corners: t.corners.map(|c| to_view * (c - camera.eye)), object: t.object };
+            studio::triangles(studio).into_iter().map(face).collect()
+        };
+        let view = View::new(camera, size, &studio.extent()).expect("a view");
+        let faces = faces_of(&studio, &view);
+        let half = view.half_extent();
+        let is_parallel = view.is_orthographic();
+        let seen = |p: DVec3| if is_parallel { p.truncate() } else { p.truncate() / -p.z };
+        // What the middle shows is the feature.
+        let straight = |place: DVec2| {
+            let (origin, direction) = plain_ray(place, is_parallel);
+            vec![([0.0, f64::INFINITY], origin, direction)]
+        };
+        let (object, _) = first(&faces, &straight(DVec2::ZERO), camera.near_m).expect("something in the middle");
+        let id = studio.model.objects[object as usize].id.to_string();
+        let own: Vec<&Face> = faces.iter().filter(|face| face.object == object).collect();
+        let corners = || own.iter().flat_map(|face| face.corners);
+        let nearest = corners().map(|p| -p.z).fold(f64::INFINITY, f64::min);
+        let farthest = corners().map(|p| -p.z).fold(0.0, f64::max);
+        let low = corners().map(seen).fold(DVec2::INFINITY, DVec2::min);
+        let high = corners().map(seen).fold(DVec2::NEG_INFINITY, DVec2::max);
+        let (z_l, z_m) = (0.5 * nearest, 0.5 * (nearest + farthest) - 0.5 * nearest);
+        let plain = if is_parallel { 1.0 } else { 1.0 + z_m / z_l };
+        let plane = Plane { center: 0.5 * (low + high), z_l, f: z_m / (1.0 - plain / 1.6), z_m };
+        let magnify = Magnify { magnification: 1.6, at: Some(z_m), distance: Some(z_l), border: 1.0 };
+        let of = Choice { ids: vec![id], ..Choice::default() };
+        let ray = RayLens { bend: Bend::Feature(Feature { magnify, of }), radius: band, ..RayLens::feature() };
+        let scene = studio::scene(camera, vec![lens(FeatureLens { ray })]);
+        let picture = draw(&mut studio, &scene, size, Backend::Specialised);
+        let ids = picture.object_id.expect("ids");
+        let pixel = 2.0 * half.y / f64::from(size[1]);
+        let place = |i: usize| {
+            let at = DVec2::new((i % size[0] as usize) as f64 + 0.5, (i / size[0] as usize) as f64 + 0.5);
+            DVec2::new(at.x * pixel - half.x, half.y - at.y * pixel)
+        };
+        // The core, from four places per pixel and side: rays to the focal point against the feature alone.
+        let alone: Vec<Face> = own.iter().map(|face| Face { corners: face.corners, object }).collect();
+        let fine = 4;
+        let wide = [size[0] * fine, size[1] * fine].map(|side| side as usize);
+        let fine_place = |i: usize| {
+            let at = DVec2::new((i % wide[0]) as f64 + 0.5, (i / wide[0]) as f64 + 0.5) / f64::from(fine);
+            DVec2::new(at.x * pixel - half.x, half.y - at.y * pixel)
+        };
+        let core: Vec<DVec2> = (0..wide[0] * wide[1])
+            .into_par_iter()
+            .map(fine_place)
+            .filter(|at| first(&alone, &plane.path(*at, 0.0, is_parallel)[1..], camera.near_m).is_some())
+            .collect();
+        let width = band * 2.0 * half.y;
+        // The lens has its core as texels of a field over all it bends, the reference as places: a share of each.
+        let reach = core.iter().map(|at| (*at - plane.center).abs().max_element()).fold(0.0, f64::max) + width;
+        let off = (1.5 * 2.0 * reach / 512.0 + pixel / f64::from(fine)) / width;
+        let found: Vec<(usize, bool)> = (0..ids.len())
+            .into_par_iter()
+            .map(|i| {
+                let at = place(i);
+                let away = core.iter().map(|from| from.distance_squared(at)).fold(f64::INFINITY, f64::min).sqrt();
+                let k = away / width;
+                let (zone, ks): (usize, Vec<f64>) = match k {
+                    k if away < 0.25 * pixel => (0, vec![0.0, off.min(k)]),
+                    k if k > 1.0 + off => (2, vec![1.0]),
+                    k => (1, (0..65).map(|s| (k + off * (f64::from(s) / 32.0 - 1.0)).clamp(0.0, 1.0)).collect()),
+                };
+                let is_met = |k: f64, aside: DVec2| {
+                    let met = first(&faces, &plane.path(at + aside, k, is_parallel), camera.near_m);
+                    met.map_or(0, |(object, _)| object + 1) == ids[i]
+                };
+                let beside = pixel * if zone == 2 { RASTER_PX } else { BESIDE_PX };
+                let ring = (0..8).map(|a| beside * DVec2::from_angle(f64::from(a) * std::f64::consts::FRAC_PI_4));
+                let mut around = std::iter::once(DVec2::ZERO).chain(ring);
+                (zone, around.any(|aside| ks.iter().any(|k| is_met(*k, aside))))
+            })
+            .collect();
+        let mut wrong = [0; 3];
+        for (zone, is_right) in found {
+            compared[zone] += 1;
+            wrong[zone] += usize::from(!is_right);
+        }
+        assert_eq!(wrong, [0; 3], "of {compared:?} in the core, the band and beyond");
+    }
+    assert!(compared[0] > 3000 && compared[1] > 3000, "{compared:?}");
+    println!("{compared:?} in the core, the band and beyond");
 }

@@ -359,7 +359,9 @@ impl Window {
             let pixel = view.pixel(at)?.truncate();
             Some(pixel / DVec2::from(view.size.map(f64::from)))
         });
-        share.filter(|share| share.cmpge(DVec2::ZERO).all() && share.cmple(DVec2::ONE).all()).unwrap_or(DVec2::splat(0.5))
+        share
+            .filter(|share| share.cmpge(DVec2::ZERO).all() && share.cmple(DVec2::ONE).all())
+            .unwrap_or(DVec2::splat(0.5))
     }
 
     fn duplicate(&mut self) {

@@ -4,7 +4,8 @@ use glam::DVec2;
 
 use crate::{
     figure::scene_file::{
-        check::Fields,
+        check::{Fields, Place},
+        choice::{self, CHOICE},
         forms::{Degrees, Form, Same, Word},
         keys::{FAR_M, Kind, Table, key},
         node::Data,
@@ -14,7 +15,7 @@ use crate::{
     },
     lens::{
         LensKind,
-        ray::{Bend, Fisheye, MOST_POINTS, Magnify, RayLens, Sampling, SamplingRate},
+        ray::{Bend, Feature, Fisheye, FisheyeProjection, MOST_POINTS, RayLens, Sampling, SamplingRate},
     },
 };
 
@@ -45,7 +46,14 @@ macro_rules! bend {
 
 const RAY_ROWS: &[Row<RayLens>] = &[
     field!(
-        key("center", Kind::PicturePlace, "[0.5, 0.5]", "", "Its middle: shares of the picture's width and height, from the left and from above.", "[0.4, 0.6]"),
+        key(
+            "center",
+            Kind::PicturePlace,
+            "[0.5, 0.5]",
+            "",
+            "Its middle: shares of the picture's width and height, from the left and from above. A feature lens stands where its feature is seen.",
+            "[0.4, 0.6]"
+        ),
         Same,
         |lens: RayLens| lens.center
     ),
@@ -53,9 +61,9 @@ const RAY_ROWS: &[Row<RayLens>] = &[
         key(
             "radius",
             Kind::Number { min: 0.001, max: 4.0 },
-            "0.25; of a fisheye 0.5",
+            "0.25; of a fisheye 0.5; of a feature lens 0.1",
             "picture heights",
-            "From its middle to its rim.",
+            "From its middle to its rim; of a feature lens how wide the band around its core is.",
             "0.3",
         ),
         Same,
@@ -79,43 +87,45 @@ const RAY_ROWS: &[Row<RayLens>] = &[
             Kind::Number { min: 0.1, max: 1000.0 },
             "2.5",
             "",
-            "Of a magnifier: how many times as large its core shows what lies at `at` and beyond; below 1 it makes smaller. Of a sampling-rate lens: how densely it samples its middle, where its rim has 1.",
+            "Of a magnifier, and of a feature lens: how many times as large its core shows what lies at `at` and beyond; below 1 it makes smaller. Of a sampling-rate lens: how densely it samples its middle, where its rim has 1.",
             "4.0",
         ),
         |lens, _| match &lens.bend {
-            Bend::Magnify(Magnify { magnification, .. }) => Some((*magnification).into()),
             Bend::Sample(Sampling { rate: SamplingRate::Cubic(middle) }) => Some((*middle).into()),
-            Bend::Sample(_) | Bend::Fisheye(_) => None,
+            other => other.magnify().map(|magnify| magnify.magnification.into()),
         },
         |lens, given| match &mut lens.bend {
-            Bend::Magnify(Magnify { magnification: number, .. })
-            | Bend::Sample(Sampling { rate: SamplingRate::Cubic(number) }) => Same::take(given.node, number),
-            Bend::Sample(_) | Bend::Fisheye(_) => {}
+            Bend::Sample(Sampling { rate: SamplingRate::Cubic(number) }) => Same::take(given.node, number),
+            other => {
+                other.magnify_mut().into_iter().for_each(|magnify| Same::take(given.node, &mut magnify.magnification))
+            }
         },
     ),
-    bend!(
+    Row::<RayLens>::new(
         key(
             "distance",
             Kind::Number { min: 0.001, max: FAR_M },
             "half of the way to what its middle shows",
             "metres",
-            "Of a magnifier: from the eye to its plane, along the view axis. What is nearer stays as it is.",
+            "Of a magnifier, and of a feature lens: from the eye to its plane, along the view axis. What is nearer stays as it is.",
             "40.0",
         ),
-        Same,
-        Bend::Magnify(magnify) => magnify.distance
+        |lens, _| lens.bend.magnify().and_then(|magnify| Same::data(&magnify.distance)),
+        |lens, given| {
+            lens.bend.magnify_mut().into_iter().for_each(|magnify| Same::take(given.node, &mut magnify.distance))
+        },
     ),
-    bend!(
+    Row::<RayLens>::new(
         key(
             "at",
             Kind::Number { min: 0.001, max: FAR_M },
             "from its plane to what its middle shows",
             "metres",
-            "Of a magnifier: from its plane, along the view axis, to where things are as much larger as `magnification` says; what is beyond is as much larger.",
+            "Of a magnifier, and of a feature lens: from its plane, along the view axis, to where things are as much larger as `magnification` says; what is beyond is as much larger.",
             "60.0",
         ),
-        Same,
-        Bend::Magnify(magnify) => magnify.at
+        |lens, _| lens.bend.magnify().and_then(|magnify| Same::data(&magnify.at)),
+        |lens, given| lens.bend.magnify_mut().into_iter().for_each(|magnify| Same::take(given.node, &mut magnify.at)),
     ),
     bend!(
         key(
@@ -128,6 +138,26 @@ const RAY_ROWS: &[Row<RayLens>] = &[
         ),
         Same,
         Bend::Magnify(magnify) => magnify.border
+    ),
+    Row::<RayLens>::new(
+        key(
+            "of",
+            Kind::Table(&CHOICE),
+            "must be given for a feature lens",
+            "",
+            "Of a feature lens: the city objects that it magnifies. Its core is where rays to its focal point meet them, in whatever shape; rays find back over `radius` around it.",
+            "{ ids = [\"town-hall\"] }",
+        ),
+        |lens, options| match &lens.bend {
+            Bend::Feature(Feature { of, .. }) => Some(choice::written(of, options)),
+            _ => None,
+        },
+        |lens, given| {
+            if let Bend::Feature(Feature { of, .. }) = &mut lens.bend {
+                let own = given.table(&CHOICE);
+                *of = choice::read(given.reader, &own);
+            }
+        },
     ),
     bend!(
         key(
@@ -178,7 +208,14 @@ const RAY_ROWS: &[Row<RayLens>] = &[
         |lens: RayLens| lens.method
     ),
     field!(
-        key("grid", Kind::Boolean, "false", "", "Whether a grid that is square without it is drawn over what it shows.", "true"),
+        key(
+            "grid",
+            Kind::Boolean,
+            "false",
+            "",
+            "Whether a grid that is square without it is drawn over what it shows.",
+            "true"
+        ),
         Same,
         |lens: RayLens| lens.grid
     ),
@@ -222,10 +259,13 @@ fn rate_problem(points: &[DVec2]) -> Option<String> {
 }
 
 /// The keys that only some kinds have, and the words of these.
-const OF_KINDS: [(&str, &[&str]); 7] = [
-    ("magnification", &["magnifier", "sampling"]),
-    ("distance", &["magnifier"]),
-    ("at", &["magnifier"]),
+const OF_KINDS: [(&str, &[&str]); 10] = [
+    ("magnification", &["magnifier", "feature", "sampling"]),
+    ("distance", &["magnifier", "feature"]),
+    ("at", &["magnifier", "feature"]),
+    ("of", &["feature"]),
+    ("center", &["magnifier", "sampling", "fisheye"]),
+    ("outline", &["magnifier", "sampling", "fisheye"]),
     ("border", &["magnifier"]),
     ("rate", &["sampling"]),
     ("angle_deg", &["fisheye"]),
@@ -239,7 +279,8 @@ const NOT_GIVEN: [&str; 6] = ["shape", "shapes", "placement", "attached_to", "ab
 pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<RayLens> {
     let Some(ray) = kind.ray() else {
         if fields.given("ray") {
-            let message = "has a meaning only for a lens of kind = \"magnifier\", \"sampling\" or \"fisheye\"";
+            let message =
+                "has a meaning only for a lens of kind = \"magnifier\", \"feature\", \"sampling\" or \"fisheye\"";
             reader.checker.note(&fields.place, "ray", fields.line("ray"), message);
         }
         return None;
@@ -249,9 +290,21 @@ pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<Ray
         reader.checker.note(&fields.place, key, fields.line(key), message);
     }
     let mut ray = ray.clone();
-    let Some(node) = fields.node("ray") else { return Some(ray) };
+    let must = |reader: &mut Reader, place: &Place, line| {
+        if matches!(kind, LensKind::Feature(_)) {
+            let message = "is missing: what the lens magnifies. For example of = { ids = [\"ID\"] }";
+            reader.checker.note(place, "of", line, message);
+        }
+    };
+    let Some(node) = fields.node("ray") else {
+        must(reader, &fields.place.within("ray", fields.place.line), fields.place.line);
+        return Some(ray);
+    };
     let own = reader.checker.fields(node, &RAY, &[], fields.place.within("ray", node.line));
     row::read(RAY_ROWS, &own, reader, &mut ray);
+    if !own.given("of") {
+        must(reader, &own.place, node.line);
+    }
     for (key, kinds) in OF_KINDS.into_iter().filter(|(key, kinds)| own.given(key) && !kinds.contains(&kind.word())) {
         let all = kinds.iter().map(|kind| format!("\"{kind}\"")).collect::<Vec<_>>().join(" or ");
         let message = format!("has a meaning only for a lens of kind = {all}");
@@ -268,7 +321,7 @@ pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<Ray
         }
     }
     if let Bend::Fisheye(Fisheye { angle, projection }) = &ray.bend
-        && *projection == crate::lens::ray::FisheyeProjection::Hemispherical
+        && *projection == FisheyeProjection::Hemispherical
         && *angle > std::f64::consts::PI + 1e-9
     {
         let message = "must be 180 at most where projection is \"hemispherical\": a half ball shows no more";

@@ -18,8 +18,8 @@ use crate::{
         best_view::{Depiction, LocalView, Look, MapMode},
         chosen::Choice,
         deform::{BORDER, ControlProfile, Step},
-        kind::{Deformation, FisheyeLens, Magnifier, Occlusion, SamplingLens, TimeLens},
-        ray::{Bend, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate},
+        kind::{Deformation, FeatureLens, FisheyeLens, Magnifier, Occlusion, SamplingLens, TimeLens},
+        ray::{Bend, Feature, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate},
         rendering::{Case, ROWS, When},
         sprite::{Format, Mapping},
     },
@@ -366,12 +366,27 @@ fn deforms() -> impl Strategy<Value = Deform> {
 /// Lenses that bend rays.
 fn ray_lenses() -> impl Strategy<Value = LensKind> {
     let angle = |tenths: u32| (f64::from(tenths) / 10.0).to_radians();
-    let magnify = (0.1..1e3f64, prop::option::of(1e-3..1e4f64), prop::option::of(1e-3..1e4f64), 0.0..=1.0f64).prop_map(
-        |(magnification, at, distance, border)| Bend::Magnify(Magnify { magnification, at, distance, border }),
-    );
+    let magnify = || {
+        let far = || prop::option::of(1e-3..1e4f64);
+        (0.1..1e3f64, far(), far(), 0.0..=1.0f64).prop_map(|(magnification, at, distance, border)| Magnify {
+            magnification,
+            at,
+            distance,
+            border,
+        })
+    };
+    let feature = (magnify(), choices())
+        .prop_map(|(magnify, of)| Bend::Feature(Feature { magnify: Magnify { border: 1.0, ..magnify }, of }));
+    let magnify = magnify().prop_map(Bend::Magnify);
     let points = prop::collection::vec((0.01..0.3f64, 0.01..1e3f64), 0..3).prop_map(|steps| {
         let mut x = 0.0;
-        let mut inner: Vec<DVec2> = steps.into_iter().map(|(step, rate)| { x += step; DVec2::new(x, rate) }).collect();
+        let mut inner: Vec<DVec2> = steps
+            .into_iter()
+            .map(|(step, rate)| {
+                x += step;
+                DVec2::new(x, rate)
+            })
+            .collect();
         inner.insert(0, DVec2::new(0.0, 2.0));
         inner.push(DVec2::new(1.0, 1.5));
         SamplingRate::Points(inner)
@@ -385,12 +400,16 @@ fn ray_lenses() -> impl Strategy<Value = LensKind> {
         };
         Bend::Fisheye(Fisheye { angle, projection })
     });
-    let bend = prop_oneof![magnify, sample, fisheye];
+    let bend = prop_oneof![magnify, feature, sample, fisheye];
     let place = (prop::array::uniform2(0.0..=1.0f64), 0.001..4.0f64, any::<bool>(), any::<bool>());
     (bend, place).prop_map(|(bend, (center, radius, is_square, grid))| {
         let outline = if is_square { RayOutline::Square } else { RayOutline::Circle };
-        let ray = RayLens { center: center.into(), radius, outline, grid, ..RayLens::new(bend) };
+        let mut ray = RayLens { radius, grid, ..RayLens::new(bend) };
+        if !matches!(ray.bend, Bend::Feature(_)) {
+            (ray.center, ray.outline) = (center.into(), outline);
+        }
         match &ray.bend {
+            Bend::Feature(_) => FeatureLens { ray }.into(),
             Bend::Magnify(_) => Magnifier { ray }.into(),
             Bend::Sample(_) => SamplingLens { ray }.into(),
             Bend::Fisheye(_) => FisheyeLens { ray }.into(),

@@ -353,11 +353,13 @@ fn every_mistake_in_a_lens_is_named() {
             "s.toml:4: [lens.0] time.0: end must be later than begin = 1900, is 1800",
         ),
         (
-            "kind = \"feature\"",
-            "s.toml:4: [lens.0] kind: \"feature\" is not available yet; available: color, content, occlusion, deformation, time",
+            "ray = {}",
+            "s.toml:4: [lens.0] ray: has a meaning only for a lens of kind = \"magnifier\", \"feature\", \"sampling\" or \"fisheye\"",
         ),
-        ("ray = {}", "s.toml:4: [lens.0] ray: has a meaning only for a lens of kind = \"magnifier\", \"sampling\" or \"fisheye\""),
-        ("kind = \"magnifier\"", "s.toml:3: [lens.0] shape: has no meaning for a lens of kind = \"magnifier\": ray says where it is"),
+        (
+            "kind = \"magnifier\"",
+            "s.toml:3: [lens.0] shape: has no meaning for a lens of kind = \"magnifier\": ray says where it is",
+        ),
         ("kind = \"deformation\"", "[lens.0] deform: is missing: what the lens does with space; for example deform ="),
         (
             "kind = \"deformation\"\ndeform = [{ kind = \"twsit\", angle_deg = 3 }]",
@@ -398,7 +400,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "kind = \"colour\"",
-            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"magnifier\" or \"sampling\" or \"fisheye\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"colour\"; did you mean \"color\"?",
+            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"magnifier\" or \"feature\" or \"sampling\" or \"fisheye\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"colour\"; did you mean \"color\"?",
         ),
         (
             "placement = \"camara\"",
@@ -511,7 +513,8 @@ fn every_mistake_in_a_lens_is_named() {
 
 #[test]
 fn every_mistake_in_a_lens_that_bends_rays_is_named() {
-    let of = |kind: &str, ray: &str| read_text(&lens_text(&format!("kind = \"{kind}\"\nray = {{ {ray} }}"))).map(|_| ());
+    let of =
+        |kind: &str, ray: &str| read_text(&lens_text(&format!("kind = \"{kind}\"\nray = {{ {ray} }}"))).map(|_| ());
     for (kind, ray, expected) in [
         ("magnifier", "magnification = 0", "ray.magnification: must be a number 0.1 to 1000, is 0"),
         ("magnifier", "border = 1.5", "ray.border: must be a number 0 to 1, is 1.5"),
@@ -519,12 +522,19 @@ fn every_mistake_in_a_lens_that_bends_rays_is_named() {
         ("magnifier", "distance = 0", "ray.distance: must be a number ≥ 0.001, is 0"),
         ("magnifier", "method = \"image\"", "ray.method: \"image\" is not available yet; available: rays"),
         ("magnifier", "angle_deg = 90", "ray.angle_deg: has a meaning only for a lens of kind = \"fisheye\""),
-        ("fisheye", "magnification = 2", "ray.magnification: has a meaning only for a lens of kind = \"magnifier\" or \"sampling\""),
-        ("sampling", "at = 20", "ray.at: has a meaning only for a lens of kind = \"magnifier\""),
+        (
+            "fisheye",
+            "magnification = 2",
+            "ray.magnification: has a meaning only for a lens of kind = \"magnifier\" or \"feature\" or \"sampling\"",
+        ),
+        ("sampling", "at = 20", "ray.at: has a meaning only for a lens of kind = \"magnifier\" or \"feature\""),
         ("sampling", "rate = [[0, 1], [0.5, 2]]", "ray.rate: must go from 0 to 1, ascending"),
         ("sampling", "rate = [[0, 1], [0.5, 0], [1, 1]]", "ray.rate: has a rate of 0; 0.01 to 1000 would be right"),
         ("sampling", "magnification = 2, rate = [[0, 1], [1, 2]]", "ray.rate: is given together with magnification"),
         ("fisheye", "angle_deg = 200, projection = \"hemispherical\"", "ray.angle_deg: must be 180 at most"),
+        ("feature", "magnification = 3", "ray.of: is missing: what the lens magnifies"),
+        ("feature", "of = { ids = [\"a\"] }, center = [0.2, 0.2]", "ray.center: has a meaning only for a lens of kind"),
+        ("magnifier", "of = { ids = [\"a\"] }", "ray.of: has a meaning only for a lens of kind = \"feature\""),
         ("magnifier", "radious = 2", "ray.radious: unknown key; did you mean \"radius\"?"),
     ] {
         let message = of(kind, ray).unwrap_err();
@@ -538,16 +548,10 @@ fn every_mistake_in_a_lens_that_bends_rays_is_named() {
 #[test]
 fn of_a_lens_of_a_wrong_kind_only_that_is_told() {
     let rest = "poi = \"hall\"\ntest = { kind = \"spherical\", radius = 9 }\nrender = \"x-ray\"\npoi_effects = [\"gooch\"]\nmagnification = 3\nmargin = -1";
-    for (kind, expected) in [
-        (
-            "occlusionn",
-            "must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"magnifier\" or \"sampling\" or \"fisheye\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?",
-        ),
-        (
-            "feature",
-            "\"feature\" is not available yet; available: color, content, occlusion, deformation, time, magnifier, sampling, fisheye, annotation, best-view, map-view, worldlet, see-through, portal",
-        ),
-    ] {
+    for (kind, expected) in [(
+        "occlusionn",
+        "must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"magnifier\" or \"feature\" or \"sampling\" or \"fisheye\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?",
+    )] {
         let message = read_text(&lens_text(&format!("{rest}\nkind = \"{kind}\""))).unwrap_err();
         assert_eq!(message, format!("s.toml:9: [lens.0] kind: {expected}"));
     }

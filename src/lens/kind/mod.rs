@@ -5,6 +5,7 @@ mod best_view;
 mod color;
 mod content;
 mod deformation;
+mod feature;
 mod fisheye;
 mod magnifier;
 mod map_view;
@@ -21,6 +22,7 @@ pub use best_view::BestViewLens;
 pub use color::ColorLens;
 pub use content::ContentLens;
 pub use deformation::Deformation;
+pub use feature::FeatureLens;
 pub use fisheye::FisheyeLens;
 pub use magnifier::Magnifier;
 pub use map_view::MapView;
@@ -98,6 +100,8 @@ kinds! {
     Time(TimeLens),
     /// Shows larger what lies behind its plane.
     Magnifier(Magnifier),
+    /// Shows a feature larger.
+    Feature(FeatureLens),
     /// Has more pixels for its middle.
     Sampling(SamplingLens),
     /// Shows more directions than the picture.
@@ -208,7 +212,8 @@ mod tests {
     #[test]
     fn a_kind_has_what_is_its_own_and_nothing_else() {
         let given = |kind: &LensKind| {
-            let parts = [kind.rendering().is_some(), kind.deform().is_some(), kind.best_view().is_some(), kind.ray().is_some()];
+            let parts =
+                [kind.rendering().is_some(), kind.deform().is_some(), kind.best_view().is_some(), kind.ray().is_some()];
             (parts.iter().filter(|is| **is).count(), kind.content().is_some())
         };
         for word in LensKind::WORDS {

@@ -164,8 +164,7 @@ impl RayListKey {
 
 impl PipelineKey for RayListKey {
     fn name(&self) -> String {
-        let flags =
-            words(&[(self.textured, "textured"), (self.texels_emit, "of light"), (self.smooth, "smooth")]);
+        let flags = words(&[(self.textured, "textured"), (self.texels_emit, "of light"), (self.smooth, "smooth")]);
         format!("{}{flags}", Module::RayLayers(self.program.clone()).name())
     }
 

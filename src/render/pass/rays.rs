@@ -30,7 +30,8 @@ use crate::{
 };
 
 /// Group 3: cities, and the triangles of their meshes.
-pub static RAYS: GroupLayout = GroupLayout { label: "rays", entries: &[(0, S::FRAGMENT, UNIFORM), (1, S::FRAGMENT, STORAGE)] };
+pub static RAYS: GroupLayout =
+    GroupLayout { label: "rays", entries: &[(0, S::FRAGMENT, UNIFORM), (1, S::FRAGMENT, STORAGE)] };
 
 /// Rays that are followed.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -64,7 +65,12 @@ impl RayKey {
 
 impl PipelineKey for RayKey {
     fn name(&self) -> String {
-        let flags = words(&[(self.colored, "colored"), (self.smooth, "smooth"), (self.measured, "measured"), (self.imaged, "imaged")]);
+        let flags = words(&[
+            (self.colored, "colored"),
+            (self.smooth, "smooth"),
+            (self.measured, "measured"),
+            (self.imaged, "imaged"),
+        ]);
         format!("{}{flags}", Module::Rays(self.hidden.clone(), self.bends).name())
     }
 

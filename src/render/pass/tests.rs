@@ -10,7 +10,7 @@ use crate::{
     lens::{
         Class, EffectUse, Lens, LensKind, LensSprite,
         ray::{Bend, Magnify, RayLens},
-        ray_path::{PictureFrame, RayPaths},
+        ray_path::{PictureFrame, RayPaths, Scenery},
     },
     render::{
         city::{Chunk, ObjectRun, SectionKind, Translucency},
@@ -237,14 +237,19 @@ fn effects_call_for_their_own_passes_alone() {
 fn lenses_that_bend_rays_call_for_a_pass_where_they_are_seen_and_bend_any() {
     let passes = |lens: &RayLens| {
         let frame = PictureFrame { half: DVec2::splat(0.5), is_parallel: false, near: 0.5 };
-        let rays = RayPaths::new(&[(0, lens, [0.0; 3])], &frame, |_| None);
+        let rays =
+            RayPaths::new(&[(0, lens, [0.0; 3])], &frame, &Scenery { shown: &|_| None, feature: &|_| Vec::new() });
         Asked { rays, ..Asked::nothing() }.passes()
     };
     let lens = RayLens::magnifier();
     assert_eq!(passes(&lens), ["geometry", "bent rays", "shade"]);
     assert_eq!(passes(&RayLens::fisheye()), ["geometry", "bent rays", "shade"]);
     assert_eq!(passes(&RayLens { radius: 0.0, ..lens.clone() }), ["geometry", "shade"]);
-    assert_eq!(passes(&RayLens { center: DVec2::splat(3.0), ..lens.clone() }), ["geometry", "shade"], "beside the picture");
+    assert_eq!(
+        passes(&RayLens { center: DVec2::splat(3.0), ..lens.clone() }),
+        ["geometry", "shade"],
+        "beside the picture"
+    );
     let Bend::Magnify(magnify) = lens.bend else { panic!("a magnifier") };
     let same = RayLens { bend: Bend::Magnify(Magnify { magnification: 1.0, ..magnify }), ..lens };
     assert_eq!(passes(&same), ["geometry", "shade"], "it shows what is there");

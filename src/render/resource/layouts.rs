@@ -72,6 +72,7 @@ pub static LENSES: GroupLayout = GroupLayout {
         (9, S::FRAGMENT, STORAGE),
         (10, S::FRAGMENT, STORAGE),
         (11, DRAWN, UNIFORM),
+        (12, DRAWN, FLOATS),
     ],
 };
 /// Geometry and shadow where something is hidden, group 1: surfaces, planes of convex volumes, faces of solids; the city, for the

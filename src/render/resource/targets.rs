@@ -3,8 +3,8 @@
 use crate::{
     gpu::Gpu,
     render::resource::formats::{
-        COLORS, DEPTH, EMISSIONS, FILTERED, LINES, MASKS, OCCLUSION, OWN_DEPTH, PICTURE, RAY_HITS, SMOOTH_CODES, SPRITES,
-        TRANSPARENCY, codes, through,
+        COLORS, DEPTH, EMISSIONS, FILTERED, LINES, MASKS, OCCLUSION, OWN_DEPTH, PICTURE, RAY_HITS, SMOOTH_CODES,
+        SPRITES, TRANSPARENCY, codes, through,
     },
 };
 
