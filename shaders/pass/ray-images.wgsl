@@ -12,7 +12,7 @@ override SMOOTH: bool = false;      // whether some faces of the picture have a 
 override IMAGE_EMITS: bool = false; // whether it says how much light of their own faces have
 
 struct Imaged {
-    @builtin(position) clip: vec4f,
+    @builtin(position) at: vec4f,
     @location(0) @interpolate(flat, either) section: u32,   // city and section, as `section_of` has them
 }
 
@@ -38,18 +38,18 @@ struct Looks {
 
 @fragment
 fn imaged(in: Imaged) -> Looks {
-    let pixel = vec2i(in.clip.xy);
+    let pixel = vec2i(in.at.xy);
     let found = textureLoad(ray_hits, pixel, 0).xy;
     let hit = Hit(distance_of_depth(textureLoad(ray_depth, pixel, 0)), max(found.x, 1u) - 1u, found.y, vec2f(0.0));
-    if !is_bent(in.clip.xy) || found.x == 0u || section_of(hit) != in.section {
+    if !is_bent(in.at.xy) || found.x == 0u || section_of(hit) != in.section {
         discard;
     }
     let kind = ray_words[hit.triangle + 1u].w;
     let rest = rest_of(hit) + select(0u, 1u, (kind & TRIANGLE_SMOOTH) != 0u);
     let corners = texcoords_of(rest);
-    let here = texcoord_of(corners, weights_beside(in.clip.xy, hit));
-    let right = texcoord_of(corners, weights_beside(in.clip.xy + vec2f(1.0, 0.0), hit)) - here;
-    let below = texcoord_of(corners, weights_beside(in.clip.xy + vec2f(0.0, 1.0), hit)) - here;
+    let here = texcoord_of(corners, weights_beside(in.at.xy, hit));
+    let right = texcoord_of(corners, weights_beside(in.at.xy + vec2f(1.0, 0.0), hit)) - here;
+    let below = texcoord_of(corners, weights_beside(in.at.xy + vec2f(0.0, 1.0), hit)) - here;
     let texel = textureSampleLevel(image, image_sampler, here, level_of(vec2f(textureDimensions(image)), right, below));
     var light = vec3f(1.0);
     if IMAGE_EMITS {

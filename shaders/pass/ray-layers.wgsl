@@ -22,12 +22,12 @@ fn note_hit(line: Ray, at: vec2f, hit: Hit) {
 }
 
 @fragment
-fn note_rays(@builtin(position) clip: vec4f) {
-    if !is_bent(clip.xy) {
+fn note_rays(@builtin(position) place: vec4f) {
+    if !is_bent(place.xy) {
         discard;
     }
-    let depth = textureLoad(opaque_depth, vec2i(clip.xy), 0);
+    let depth = textureLoad(opaque_depth, vec2i(place.xy), 0);
     var last = NO_HIT;
     last.t = select(FAR_AWAY, distance_of_depth(depth), depth > 0.0);
-    first_of_pixel(clip.xy, last);
+    first_of_pixel(place.xy, last);
 }

@@ -16,14 +16,14 @@ struct Followed {
 }
 
 @fragment
-fn follow(@builtin(position) clip: vec4f) -> Followed {
-    if !is_bent(clip.xy) {
+fn follow(@builtin(position) place: vec4f) -> Followed {
+    if !is_bent(place.xy) {
         discard;
     }
-    let hit = first_of_pixel(clip.xy, NO_HIT);
+    let hit = first_of_pixel(place.xy, NO_HIT);
     var followed: Followed;
     if hit.t < FAR_AWAY {
-        let look = look_of(clip.xy, hit);
+        let look = look_of(place.xy, hit);
         followed.code = vec2u(code_of(hit), look.normal);
         followed.color = vec4f(look.color, look.facade);
         followed.depth = depth_of_distance(hit.t);

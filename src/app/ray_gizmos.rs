@@ -56,7 +56,7 @@ impl Window {
     pub(super) fn drag_ray(&mut self, lens: usize, kind: GizmoKind, rect: Rect, now: Pos2) {
         let Some(ray) = self.document.scene().lenses.get(lens).and_then(|lens| lens.ray()) else { return };
         let (middle, _) = place_of(ray, rect);
-        let edit = match kind {
+        let (key, value) = match kind {
             GizmoKind::Ring => {
                 let from = now - middle;
                 let reach = match ray.outline {
@@ -70,10 +70,10 @@ impl Window {
                 ("center", Data::from([share.x, share.y].map(|c| rounded(f64::from(c.clamp(0.0, 1.0))))))
             }
         };
-        self.preview_ray(lens, edit);
+        self.preview_ray(lens, key, value);
     }
 
-    fn preview_ray(&mut self, lens: usize, (key, value): (&str, Data)) {
+    fn preview_ray(&mut self, lens: usize, key: &str, value: Data) {
         if let Err(error) = self.document.preview_value(&format!("lens.{lens}.ray.{key}"), Some(value)) {
             self.fail(error);
         }
@@ -93,7 +93,7 @@ impl Window {
         let is_alt = ui.input(|input| input.modifiers.alt);
         let factor = (BY_WHEEL * f64::from(scroll)).exp();
         let magnified = |now: f64| rounded((now * factor).clamp(MAGNIFICATIONS[0], MAGNIFICATIONS[1]));
-        let edit = match &ray.bend {
+        let (key, value) = match &ray.bend {
             Bend::Magnify(magnify) if is_alt => {
                 let wider = magnify.border + BORDER_BY_WHEEL * f64::from(scroll);
                 ("border", Data::from(rounded(wider.clamp(0.0, 1.0))))
@@ -111,7 +111,7 @@ impl Window {
                 ("angle_deg", Data::from(rounded(angle.clamp(ANGLES_DEG[0], ANGLES_DEG[1]))))
             }
         };
-        self.preview_ray(index, edit);
+        self.preview_ray(index, key, value);
         true
     }
 }

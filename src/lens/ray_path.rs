@@ -198,7 +198,7 @@ impl RayPaths {
         let mut paths = Self { is_parallel: frame.is_parallel, ..Self::default() };
         for &(number, lens, color) in lenses {
             let rim = Rim { grid: lens.grid.then_some(color), ..frame.rim(lens) };
-            if !(rim.radius > 0.0) {
+            if rim.radius.is_nan() || rim.radius <= 0.0 {
                 continue;
             }
             let image = |rim, bend| ImageLens { lens: number, rim, bend };
@@ -339,8 +339,8 @@ impl RayPaths {
     fn round(&self, rim: &Rim, place: DVec2, angle: f64, projection: FisheyeProjection) -> ViewLine {
         // Parallel rays have no direction to the middle but one.
         let middle = if self.is_parallel { DVec2::ZERO } else { rim.center };
-        let forward = middle.extend(-1.0).normalize();
-        let right = forward.cross(DVec3::Y).normalize();
+        let forward = middle.extend(-1.0).normalize_or(DVec3::NEG_Z);
+        let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
         let up = right.cross(forward);
         let from = (place - rim.center) / rim.radius;
         let share = from.length();
@@ -358,7 +358,7 @@ impl RayPaths {
             }
         };
         let direction = turn.cos() * forward + slope * (from.x * right + from.y * up);
-        ViewLine { origin: DVec3::ZERO, direction: direction.normalize() }
+        ViewLine { origin: DVec3::ZERO, direction: direction.normalize_or(forward) }
     }
 
     /// The line that a path lies on at a parameter.

@@ -104,7 +104,7 @@ fn of_rim(rim: &Rim) -> layout::RayLens {
     }
 }
 
-/// The fields of lenses that have some, one below the other: texels of a picture of [`SIDE`] across.
+/// The fields of lenses that have some, one below the other: texels of a picture of [`SIDE`](crate::lens::share_field::SIDE) across.
 pub(super) fn fields(paths: &RayPaths) -> Vec<&ShareField> {
     paths.planes.iter().filter_map(|lens| lens.rim.field.as_deref()).collect()
 }

@@ -12,7 +12,10 @@ use rustc_hash::FxHashMap;
 
 use crate::{
     city::NONE,
-    geom::{Aabb, bvh::Bvh},
+    geom::{
+        Aabb,
+        bvh::{Bvh, FlatNode},
+    },
     gpu::{Gpu, GpuError},
     render::{
         cells::Detail,
@@ -315,14 +318,16 @@ impl Mesh {
             })
             .collect();
         let (nodes, items) = Bvh::build(&boxes).flat(MOST_DEPTH, &boxes);
-        Ok(Self::of_parts(of, &triangles, (&nodes, &items), (origin, step)))
+        Ok(Self::of_parts(of, &triangles, &nodes, &items, origin, step))
     }
 
     fn of_parts(
         of: MadeOf,
         triangles: &[Triangle],
-        (nodes, items): (&[crate::geom::bvh::FlatNode], &[u32]),
-        (origin, step): (DVec3, f64),
+        nodes: &[FlatNode],
+        items: &[u32],
+        origin: DVec3,
+        step: f64,
     ) -> Self {
         let first_triangle = 2 * nodes.len();
         let first_rest = first_triangle + 3 * items.len();

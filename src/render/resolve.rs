@@ -131,7 +131,7 @@ impl Surroundings<'_> {
         let deformations = self.deformations(scene, camera, known)?;
         let eye = Eye::new(camera)?;
         let frame = PictureFrame::new(camera, size);
-        let mut found = self.placed(drawn, (&eye, frame), &deformations.moved, known)?;
+        let mut found = self.placed(drawn, &eye, &frame, &deformations.moved, known)?;
         let technique = scene.style.technique;
         if let Some(problem) = technique.refuses(scene).or_else(|| regions::refused(scene, &found.volumes)) {
             return Err(ResolveError::Scene(problem.to_string()));
@@ -217,13 +217,14 @@ impl Surroundings<'_> {
         known: &mut Known,
     ) -> Result<Vec<LensVolume>, ResolveError> {
         let moved = self.deformations(&drawn.scene, camera, known)?.moved;
-        Ok(self.placed(drawn, (&Eye::new(camera)?, PictureFrame::new(camera, size)), &moved, known)?.volumes)
+        Ok(self.placed(drawn, &Eye::new(camera)?, &PictureFrame::new(camera, size), &moved, known)?.volumes)
     }
 
     fn placed(
         &self,
         drawn: &Drawn,
-        (eye, frame): (&Eye, PictureFrame),
+        eye: &Eye,
+        frame: &PictureFrame,
         moved: &Moved,
         known: &mut Known,
     ) -> Result<LensVolumes, ResolveError> {
@@ -237,7 +238,7 @@ impl Surroundings<'_> {
             solids: &mut known.solids,
             occlusion: &mut known.occlusion,
             viewer: eye.viewer(),
-            frame,
+            frame: *frame,
             moved,
             lens: "",
             is_enabled: true,

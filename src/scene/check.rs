@@ -109,16 +109,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
             }));
         }
     }
-    for (i, lens) in scene.lenses.iter().enumerate() {
-        let feature = lens.ray().and_then(|ray| ray.bend.feature());
-        let named = feature.into_iter().flat_map(|feature| absent(model, &feature.of));
-        problems.extend(named.map(|(key, message)| SceneProblem {
-            table: format!("lens.{i}"),
-            is_error: key == "attribute",
-            key: format!("ray.of.{key}"),
-            message: format!("chooses nothing: {message}"),
-        }));
-    }
+    check_features(scene, model, &mut problems);
     for (i, poi) in scene.pois.iter().enumerate() {
         let PoiPlace::Object(id) = &poi.place else { continue };
         if model.find_object(id).is_none() {
@@ -175,6 +166,20 @@ fn check_occluders(of: &Occluders, table: &str, scene: &Scene, model: &CityModel
         for (at, message) in choice.iter().flat_map(|choice| absent(model, choice)) {
             problem(format!("{key}.{at}"), format!("chooses nothing: {message}"));
         }
+    }
+}
+
+/// What lenses magnify in its own outline.
+fn check_features(scene: &Scene, model: &CityModel, problems: &mut Vec<SceneProblem>) {
+    for (i, lens) in scene.lenses.iter().enumerate() {
+        let feature = lens.ray().and_then(|ray| ray.bend.feature());
+        let named = feature.into_iter().flat_map(|feature| absent(model, &feature.of));
+        problems.extend(named.map(|(key, message)| SceneProblem {
+            table: format!("lens.{i}"),
+            is_error: key == "attribute",
+            key: format!("ray.of.{key}"),
+            message: format!("chooses nothing: {message}"),
+        }));
     }
 }
 

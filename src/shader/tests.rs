@@ -118,7 +118,10 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
         timed: seed % 3 < 2,
         partly: seed % 3 == 1,
         moves: seed % 3 < 2 && seed % 7 < 3,
-        bends: Bends { images: u32::from(seed % 8 == 1), planes: (seed % 4) as u32 / 3 + u32::from(seed % 5 == 0) },
+        bends: Bends {
+            images: u32::from(seed % 8 == 1),
+            planes: (seed % 4) as u32 / 3 + u32::from(seed.is_multiple_of(5)),
+        },
         varies: seed % 3 < 2 && seed % 5 < 2,
         lit: seed % 3 < 2 && seed % 5 < 1,
         epochs: epochs_of(seed),

@@ -151,10 +151,10 @@ pub fn path(lens: &Bent, place: DVec2, is_parallel: bool) -> Vec<Piece> {
                 FisheyeProjection::Angular => share * angle / 2.0,
                 FisheyeProjection::Hemispherical => (share * (angle / 2.0).sin()).asin(),
             };
-            let forward = own(if is_parallel { DVec2::ZERO } else { lens.center }).1.normalize();
-            let right = forward.cross(DVec3::Y).normalize();
+            let forward = own(if is_parallel { DVec2::ZERO } else { lens.center }).1.normalize_or_zero();
+            let right = forward.cross(DVec3::Y).normalize_or_zero();
             let up = right.cross(forward);
-            let aside = if share > 0.0 { (from.x * right + from.y * up).normalize() } else { DVec3::ZERO };
+            let aside = if share > 0.0 { (from.x * right + from.y * up).normalize_or_zero() } else { DVec3::ZERO };
             vec![([0.0, f64::INFINITY], DVec3::ZERO, turn.cos() * forward + turn.sin() * aside)]
         }
     }
