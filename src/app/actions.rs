@@ -162,6 +162,8 @@ pub const ROWS: &[Row] = &[
     row(Action::AddLens(NewLens::Deformation), Menu::Lens, "Add deformation lens", None),
     row(Action::AddLens(NewLens::Lower), Menu::Lens, "Lower what hides the object", None),
     row(Action::AddLens(NewLens::Magnifier), Menu::Lens, "Add magnifier", None),
+    row(Action::AddLens(NewLens::Feature), Menu::Lens, "Magnify the object in its outline", None),
+    row(Action::AddLens(NewLens::Sampling), Menu::Lens, "Add sampling-rate lens", None),
     row(Action::AddLens(NewLens::Fisheye), Menu::Lens, "Add fisheye", None),
     row(Action::AddLens(NewLens::BestView), Menu::Lens, "Add best view of the object", plain(Key::B)),
     row(Action::AddLens(NewLens::Annotation), Menu::Lens, "Add annotation of the object", None),

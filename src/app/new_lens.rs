@@ -32,6 +32,10 @@ pub enum NewLens {
     Lower,
     /// Shows larger what lies behind its plane.
     Magnifier,
+    /// Shows an object larger, in its own outline.
+    Feature,
+    /// Shows its middle larger, without a plane.
+    Sampling,
     /// Shows more directions than the picture.
     Fisheye,
     /// A picture of an object.
@@ -58,6 +62,11 @@ pub struct Spot {
 impl NewLens {
     /// Whether it is about an object.
     pub fn needs_object(self) -> bool {
+        self.has_poi() || self == Self::Feature
+    }
+
+    /// Whether the object becomes a point of interest.
+    fn has_poi(self) -> bool {
         matches!(self, Self::Occlusion | Self::Lower | Self::BestView | Self::Annotation)
     }
 
@@ -73,6 +82,8 @@ impl NewLens {
             Self::Deformation => "raised",
             Self::Lower => "lowered",
             Self::Magnifier => "magnifier",
+            Self::Feature => "larger",
+            Self::Sampling => "sampling",
             Self::Fisheye => "fisheye",
             Self::BestView => "view",
             Self::Annotation => "note",
@@ -91,7 +102,8 @@ impl NewLens {
         let index = document.scene().lenses.len();
         let name = free_name(document.scene(), self.stem());
         let mut draft = Document::new(document.scene().clone(), document.file().map(Into::into));
-        let poi = spot.object.as_ref().map(|id| poi_of(&mut draft, id)).transpose()?.unwrap_or_default();
+        let about = spot.object.as_ref().filter(|_| self.has_poi());
+        let poi = about.map(|id| poi_of(&mut draft, id)).transpose()?.unwrap_or_default();
         let (DVec3 { x, y, z }, r) = (spot.at, spot.radius);
         let shape = format!("shape = {{ kind = \"sphere\", center = [{x:.2}, {y:.2}, {z:.2}], radius = {r:.1} }}");
         let upright = format!(
@@ -122,6 +134,11 @@ impl NewLens {
                 format!("kind = \"deformation\", deform = [{{ kind = \"lower\", poi = {poi}, factor = 0.15 }}]")
             }
             Self::Magnifier => format!("kind = \"magnifier\", ray = {{ center = [{sx}, {sy}] }}"),
+            Self::Feature => {
+                let id = quoted(spot.object.as_deref().unwrap_or_default());
+                format!("kind = \"feature\", ray = {{ of = {{ ids = [{id}] }}, magnification = 1.6 }}")
+            }
+            Self::Sampling => format!("kind = \"sampling\", ray = {{ center = [{sx}, {sy}] }}"),
             Self::Fisheye => format!("kind = \"fisheye\", ray = {{ center = [{sx}, {sy}], radius = 0.3 }}"),
             Self::BestView => format!("kind = \"best-view\", poi = {poi}"),
             Self::Annotation => format!("kind = \"annotation\", poi = {poi}, text = \"{{name}}\""),
@@ -223,5 +240,23 @@ mod tests {
         assert!(first.name == "change" && second.name == "change 2");
         assert!((0..3).all(|_| document.undo().is_some()));
         assert!(document.scene().city.changes.is_empty() && document.scene().lenses.is_empty());
+    }
+
+    #[test]
+    fn lenses_that_bend_rays_stand_where_they_are_put_or_on_the_object() {
+        let mut document = Document::new(Scene::default(), None);
+        let spot = Spot { at: DVec3::ZERO, share: DVec2::new(0.25, 0.75), radius: 50.0, object: None };
+        assert!(NewLens::Feature.add(&mut document, &spot).is_err());
+        for (index, kind) in [NewLens::Magnifier, NewLens::Sampling, NewLens::Fisheye].into_iter().enumerate() {
+            assert_eq!(kind.add(&mut document, &spot), Ok(index));
+            let ray = document.scene().lenses[index].ray().expect("a lens that bends rays");
+            assert_eq!(ray.center, spot.share);
+        }
+        let spot = Spot { object: Some("house".into()), ..spot };
+        assert_eq!(NewLens::Feature.add(&mut document, &spot), Ok(3));
+        let lens = &document.scene().lenses[3];
+        let feature = lens.ray().and_then(|ray| ray.bend.feature()).expect("a feature lens");
+        assert_eq!((&feature.of.ids[..], lens.name.as_str()), (&["house".to_owned()][..], "larger"));
+        assert!(document.scene().pois.is_empty(), "it needs no point of interest");
     }
 }

@@ -175,6 +175,14 @@ impl Bend {
 }
 
 impl SamplingRate {
+    /// Whether it is the same everywhere: it changes nothing.
+    pub fn is_even(&self) -> bool {
+        match self {
+            Self::Cubic(middle) => *middle == 1.0,
+            Self::Points(points) => points.windows(2).all(|pair| pair[0].y == pair[1].y),
+        }
+    }
+
     /// The rate at a share of the radius, 0..=1.
     pub fn at(&self, s: f64) -> f64 {
         match self {

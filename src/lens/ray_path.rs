@@ -208,6 +208,7 @@ impl RayPaths {
                     paths.planes.extend(PlaneLens::new(number, &rim, magnify, frame, middle));
                 }
                 Bend::Feature(feature) => paths.planes.extend(of_feature(number, &rim, feature, frame, scenery)),
+                Bend::Sample(sampling) if sampling.rate.is_even() => {}
                 Bend::Sample(sampling) => {
                     paths.images.push(image(rim, ImageBend::Sampled(SampledRadius::new(&sampling.rate))));
                 }

@@ -217,12 +217,17 @@ mod tests {
     use crate::{
         city::{Attribute, CityObject, Value},
         geom::combination::Operation,
-        lens::{EffectUse, Lens, Parameter, chosen::Choice},
+        lens::{
+            EffectUse, Lens, Parameter,
+            chosen::Choice,
+            kind::FeatureLens,
+            ray::{Bend, RayLens},
+        },
         scene::model::Poi,
     };
 
-    #[test]
-    fn absent_names_get_their_neighbours() {
+    /// A city of a town hall.
+    fn town_hall() -> CityModel {
         let mut model = CityModel::default();
         let (kind, name) = (model.strings.intern("Building"), model.strings.intern("yearOfConstruction"));
         model.attributes.push(Attribute { name, value: Value::Integer(1931) });
@@ -235,6 +240,12 @@ mod tests {
             attributes: 0..1,
             geometries: 0..0,
         });
+        model
+    }
+
+    #[test]
+    fn absent_names_get_their_neighbours() {
+        let model = town_hall();
         let mut scene = Scene::default();
         let used = |attribute: &str| EffectUse {
             effect: "thematic".into(),
@@ -306,5 +317,21 @@ mod tests {
         let errors: Vec<usize> =
             (0..).zip(check_against(&scene, &model)).filter(|(_, p)| p.is_error).map(|(i, _)| i).collect();
         assert_eq!(errors, [0, 5, 9]);
+    }
+
+    #[test]
+    fn features_that_the_city_lacks_are_told() {
+        let mut scene = Scene::default();
+        let model = town_hall();
+        let mut lens = Lens::plain("glass", FeatureLens { ray: RayLens::feature() }, [0.5; 3]);
+        let Some(Bend::Feature(feature)) = lens.kind.ray_mut().map(|ray| &mut ray.bend) else {
+            panic!("a feature lens")
+        };
+        feature.of = Choice { ids: vec!["town-hall".into(), "townhall".into()], ..Choice::default() };
+        scene.lenses.push(lens);
+        let messages: Vec<String> = check_against(&scene, &model).iter().map(ToString::to_string).collect();
+        let expected =
+            "[lens.0] ray.of.ids.1: chooses nothing: the city has no object \"townhall\"; did you mean \"town-hall\"?";
+        assert_eq!(messages, [expected]);
     }
 }

@@ -113,6 +113,42 @@ fn both_back_ends_draw_random_scenes_the_same() {
     assert!(count * 10 > total * 8, "{count} of {total} scenes can be drawn");
 }
 
+/// Lenses that bend rays, over a random scene.
+fn bends(seed: u64) -> &'static str {
+    const ALL: [&str; 4] = [
+        "kind = \"magnifier\"\nray = { center = [0.4, 0.5], radius = 0.4 }",
+        "kind = \"sampling\"\nray = { radius = 0.45, magnification = 3.0 }",
+        "kind = \"magnifier\"\nray = { radius = 0.45, magnification = 0.6, border = 0.8, outline = \"square\", grid = true }\n[[lens]]\nname = \"b1\"\n\
+         kind = \"magnifier\"\nray = { center = [0.6, 0.6], radius = 0.3 }\neffects = [\"sepia\"]",
+        "kind = \"fisheye\"\nray = { angle_deg = 250 }",
+    ];
+    ALL[(seed % 4) as usize]
+}
+
+#[test]
+fn both_back_ends_bend_rays_through_random_scenes_the_same() {
+    let wanted = Wanted { lenses: [1, 3], deformations: true, history: None };
+    let city = "builtin:square";
+    let mut studio = of_scene(&parse_city(city));
+    let (mut count, mut wrong) = (0, Vec::new());
+    // Families of their own.
+    let all: Vec<u64> = seeds().into_iter().map(|seed| seed + 2000 * FAMILY).collect();
+    for seed in &all {
+        let bends = bends(if is_thorough() { *seed } else { seed / FAMILY });
+        let text = format!("{}\n[[lens]]\nname = \"b0\"\n{bends}\n", scene(*seed, city, wanted));
+        match same_by_both(&mut studio, &text) {
+            Ok(drawn) => count += usize::from(drawn.is_some()),
+            Err(difference) => {
+                println!("seed {seed}: {difference}");
+                wrong.push(format!("seed {seed}: {difference}"));
+            }
+        }
+    }
+    println!("{count} of {} scenes drawn", all.len());
+    assert!(wrong.is_empty(), "{} of {} scenes:\n{}", wrong.len(), all.len(), wrong.join("\n"));
+    assert!(count * 2 > all.len(), "{count} of {} scenes can be drawn", all.len());
+}
+
 /// Keys of `[city]` by which things of the square move and change over centuries; the tables stay as long as the tests run.
 fn history() -> &'static str {
     let model = of_scene(&parse_city("builtin:square")).model;

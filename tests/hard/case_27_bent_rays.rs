@@ -81,7 +81,7 @@ impl Bent {
 pub type Piece = ([f64; 2], DVec3, DVec3);
 
 /// Where the ray of a place of the picture begins, and where it goes.
-fn plain_ray(place: DVec2, is_parallel: bool) -> (DVec3, DVec3) {
+pub fn plain_ray(place: DVec2, is_parallel: bool) -> (DVec3, DVec3) {
     match is_parallel {
         true => (place.extend(0.0), DVec3::NEG_Z),
         false => (DVec3::ZERO, place.extend(-1.0)),
@@ -89,7 +89,7 @@ fn plain_ray(place: DVec2, is_parallel: bool) -> (DVec3, DVec3) {
 }
 
 /// A plane that bends rays (equation 1).
-struct Plane {
+pub struct Plane {
     center: DVec2,
     z_l: f64,
     f: f64,
@@ -97,8 +97,16 @@ struct Plane {
 }
 
 impl Plane {
+    /// That of a magnifier in the middle of the picture.
+    pub fn of(lens: &RayLens, is_parallel: bool) -> Self {
+        let magnify = lens.bend.magnify().expect("a magnifier");
+        let (z_l, z_m) = (magnify.distance.expect("a distance"), magnify.at.expect("a depth"));
+        let plain = if is_parallel { 1.0 } else { 1.0 + z_m / z_l };
+        Self { center: DVec2::ZERO, z_l, f: z_m / (1.0 - plain / magnify.magnification), z_m }
+    }
+
     /// The path of a place's ray, where the border has come to `k`.
-    fn path(&self, place: DVec2, k: f64, is_parallel: bool) -> Vec<Piece> {
+    pub fn path(&self, place: DVec2, k: f64, is_parallel: bool) -> Vec<Piece> {
         let Self { center, z_l, f, z_m } = *self;
         let (origin, direction) = plain_ray(place, is_parallel);
         let on_plane = origin + z_l * direction;
@@ -161,9 +169,9 @@ pub fn path(lens: &Bent, place: DVec2, is_parallel: bool) -> Vec<Piece> {
 }
 
 /// A triangle of the city, view space.
-struct Face {
-    corners: [DVec3; 3],
-    object: u32,
+pub struct Face {
+    pub corners: [DVec3; 3],
+    pub object: u32,
 }
 
 /// Where a line meets a triangle (Möller & Trumbore, 1997).
@@ -182,7 +190,7 @@ fn meets(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> 
 }
 
 /// What a path meets first: its object and the parameter.
-fn first(faces: &[Face], pieces: &[Piece], near: f64) -> Option<(u32, f64)> {
+pub fn first(faces: &[Face], pieces: &[Piece], near: f64) -> Option<(u32, f64)> {
     for ([begin, end], origin, direction) in pieces {
         let met = faces.iter().filter_map(|face| {
             let t = meets(*origin, *direction, face.corners)?;
@@ -195,15 +203,15 @@ fn first(faces: &[Face], pieces: &[Piece], near: f64) -> Option<(u32, f64)> {
     None
 }
 
-fn lens(kind: impl Into<LensKind>) -> Lens {
+pub fn lens(kind: impl Into<LensKind>) -> Lens {
     Lens { body: LensBody::None, ..Lens::plain("bent", kind, [0.5; 3]) }
 }
 
-fn magnifier(ray: RayLens) -> Lens {
+pub fn magnifier(ray: RayLens) -> Lens {
     lens(Magnifier { ray })
 }
 
-fn magnify(magnification: f64, distance: f64, at: f64, border: f64) -> RayLens {
+pub fn magnify(magnification: f64, distance: f64, at: f64, border: f64) -> RayLens {
     let bend = Magnify { magnification, at: Some(at), distance: Some(distance), border };
     RayLens { bend: Bend::Magnify(bend), radius: 0.42, ..RayLens::magnifier() }
 }
@@ -236,12 +244,54 @@ fn all() -> Vec<Lens> {
     ]
 }
 
-fn cameras(studio: &Studio) -> Vec<Camera> {
+pub fn cameras(studio: &Studio) -> Vec<Camera> {
     let middle = studio.extent().center();
     let slanting = Camera::looking(middle + DVec3::new(70.0, -150.0, 120.0), middle, 0.8);
     let level = Camera { projection: Projection::Orthographic { height_m: 160.0 }, ..slanting };
     let street = Camera::looking(middle + DVec3::new(9.0, -60.0, 4.0), middle + DVec3::new(-6.0, 20.0, 8.0), 1.0);
     vec![slanting, level, street]
+}
+
+/// A city as a camera sees it, without lenses.
+pub struct Sight {
+    pub faces: Vec<Face>,
+    pub half: DVec2,
+    pub is_parallel: bool,
+    size: [u32; 2],
+    near: f64,
+}
+
+impl Sight {
+    pub fn new(studio: &Studio, camera: Camera, size: [u32; 2]) -> Self {
+        let view = View::new(camera, size, &studio.extent()).expect("a view");
+        let to_view = view.basis.view_from_world();
+        let face =
+            |t: studio::Triangle| Face { corners: t.corners.map(|c| to_view * (c - camera.eye)), object: t.object };
+        let faces = studio::triangles(studio).into_iter().map(face).collect();
+        Self { faces, half: view.half_extent(), is_parallel: view.is_orthographic(), size, near: camera.near_m }
+    }
+
+    /// The middle of a pixel.
+    pub fn pixel(&self, i: usize) -> DVec2 {
+        let w = self.size[0] as usize;
+        DVec2::new((i % w) as f64 + 0.5, (i / w) as f64 + 0.5)
+    }
+
+    /// Where that is in the picture's plane.
+    pub fn place(&self, pixel: DVec2) -> DVec2 {
+        let [w, h] = self.size.map(f64::from);
+        DVec2::new(2.0 * pixel.x / w - 1.0, 1.0 - 2.0 * pixel.y / h) * self.half
+    }
+
+    pub fn straight(&self, place: DVec2) -> Vec<Piece> {
+        let (origin, direction) = plain_ray(place, self.is_parallel);
+        vec![([0.0, f64::INFINITY], origin, direction)]
+    }
+
+    /// What an AOV of objects says of a path.
+    pub fn id(&self, path: &[Piece]) -> u32 {
+        first(&self.faces, path, self.near).map_or(0, |(object, _)| object + 1)
+    }
 }
 
 fn draw(studio: &mut Studio, scene: &Scene, size: [u32; 2], backend: Backend) -> Picture {
@@ -254,20 +304,14 @@ fn compare(studio: &mut Studio, camera: Camera, lens: &Lens, size: [u32; 2]) -> 
     let scene = studio::scene(camera, vec![lens.clone()]);
     let picture = draw(studio, &scene, size, Backend::Specialised);
     let view = View::new(camera, size, &studio.extent()).expect("a view");
-    let to_view = view.basis.view_from_world();
-    let faces: Vec<Face> = studio::triangles(studio)
-        .into_iter()
-        .map(|t| Face { corners: t.corners.map(|c| to_view * (c - camera.eye)), object: t.object })
-        .collect();
+    let sight = Sight::new(studio, camera, size);
     let reference = Bent::new(lens.ray().expect("a lens that bends rays"), &view);
-    let half = view.half_extent();
-    let [w, h] = size.map(f64::from);
     let (ids, depths) = (picture.object_id.expect("ids"), picture.depth.expect("depths"));
-    let place = |pixel: DVec2| DVec2::new((2.0 * pixel.x / w - 1.0) * half.x, (1.0 - 2.0 * pixel.y / h) * half.y);
-    let met = |pixel: DVec2| first(&faces, &path(&reference, place(pixel), view.is_orthographic()), camera.near_m);
+    let met =
+        |pixel: DVec2| first(&sight.faces, &path(&reference, sight.place(pixel), sight.is_parallel), camera.near_m);
     let of_pixel = |i: usize| {
-        let pixel = DVec2::new((i % size[0] as usize) as f64 + 0.5, (i / size[0] as usize) as f64 + 0.5);
-        let from = place(pixel) - reference.center;
+        let pixel = sight.pixel(i);
+        let from = sight.place(pixel) - reference.center;
         if reference.radius_at(from) >= reference.radius {
             return None;
         }
@@ -319,23 +363,12 @@ fn a_feature_is_magnified_where_rays_to_its_focal_point_meet_it() {
     let size = [240, 160];
     let mut compared = [0; 3];
     for (camera, band) in cameras(&studio).into_iter().zip([0.12, 0.2, 0.06]) {
-        let faces_of = |studio: &Studio, view: &View| -> Vec<Face> {
-            let to_view = view.basis.view_from_world();
-            let face =
-                |t: studio::Triangle| Face { corners: t.corners.map(|c| to_view * (c - camera.eye)), object: t.object };
-            studio::triangles(studio).into_iter().map(face).collect()
-        };
-        let view = View::new(camera, size, &studio.extent()).expect("a view");
-        let faces = faces_of(&studio, &view);
-        let half = view.half_extent();
-        let is_parallel = view.is_orthographic();
+        let sight = Sight::new(&studio, camera, size);
+        let Sight { faces, half, is_parallel, .. } = &sight;
+        let (half, is_parallel) = (*half, *is_parallel);
         let seen = |p: DVec3| if is_parallel { p.truncate() } else { p.truncate() / -p.z };
         // What the middle shows is the feature.
-        let straight = |place: DVec2| {
-            let (origin, direction) = plain_ray(place, is_parallel);
-            vec![([0.0, f64::INFINITY], origin, direction)]
-        };
-        let (object, _) = first(&faces, &straight(DVec2::ZERO), camera.near_m).expect("something in the middle");
+        let (object, _) = first(faces, &sight.straight(DVec2::ZERO), camera.near_m).expect("something in the middle");
         let id = studio.model.objects[object as usize].id.to_string();
         let own: Vec<&Face> = faces.iter().filter(|face| face.object == object).collect();
         let corners = || own.iter().flat_map(|face| face.corners);
@@ -353,10 +386,6 @@ fn a_feature_is_magnified_where_rays_to_its_focal_point_meet_it() {
         let picture = draw(&mut studio, &scene, size, Backend::Specialised);
         let ids = picture.object_id.expect("ids");
         let pixel = 2.0 * half.y / f64::from(size[1]);
-        let place = |i: usize| {
-            let at = DVec2::new((i % size[0] as usize) as f64 + 0.5, (i / size[0] as usize) as f64 + 0.5);
-            DVec2::new(at.x * pixel - half.x, half.y - at.y * pixel)
-        };
         // The core, from four places per pixel and side: rays to the focal point against the feature alone.
         let alone: Vec<Face> = own.iter().map(|face| Face { corners: face.corners, object }).collect();
         let fine = 4;
@@ -377,7 +406,7 @@ fn a_feature_is_magnified_where_rays_to_its_focal_point_meet_it() {
         let found: Vec<(usize, bool)> = (0..ids.len())
             .into_par_iter()
             .map(|i| {
-                let at = place(i);
+                let at = sight.place(sight.pixel(i));
                 let away = core.iter().map(|from| from.distance_squared(at)).fold(f64::INFINITY, f64::min).sqrt();
                 let k = away / width;
                 let (zone, ks): (usize, Vec<f64>) = match k {
@@ -385,10 +414,7 @@ fn a_feature_is_magnified_where_rays_to_its_focal_point_meet_it() {
                     k if k > 1.0 + off => (2, vec![1.0]),
                     k => (1, (0..65).map(|s| (k + off * (f64::from(s) / 32.0 - 1.0)).clamp(0.0, 1.0)).collect()),
                 };
-                let is_met = |k: f64, aside: DVec2| {
-                    let met = first(&faces, &plane.path(at + aside, k, is_parallel), camera.near_m);
-                    met.map_or(0, |(object, _)| object + 1) == ids[i]
-                };
+                let is_met = |k: f64, aside: DVec2| sight.id(&plane.path(at + aside, k, is_parallel)) == ids[i];
                 let beside = pixel * if zone == 2 { RASTER_PX } else { BESIDE_PX };
                 let ring = (0..8).map(|a| beside * DVec2::from_angle(f64::from(a) * std::f64::consts::FRAC_PI_4));
                 let mut around = std::iter::once(DVec2::ZERO).chain(ring);

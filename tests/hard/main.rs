@@ -31,6 +31,8 @@ mod case_18_seams;
 mod case_20_coincident_anchors;
 mod case_20_identity_deformation;
 mod case_20_identity_lens;
+mod case_20_identity_rays;
+mod case_21_bent_rays;
 mod case_21_call_outs;
 mod case_21_deformed_terrain;
 mod case_21_extreme_views;
