@@ -166,7 +166,7 @@ fn things_are_as_many_times_as_large_as_the_lens_says() {
         })
         .collect();
     let mut studio = studio::boxes("magnified", &boxes, false, false);
-    let size = [600, 600];
+    let size = [400, 400];
     let middle = DVec3::new(0.0, 100.0, 0.0);
     let (eye, m) = (middle + DVec3::new(0.0, 0.0, 160.0), 2.2);
     let above = veduta::view::Camera { up: DVec3::Y, ..veduta::view::Camera::looking(eye, middle, 0.75) };
@@ -183,12 +183,12 @@ fn things_are_as_many_times_as_large_as_the_lens_says() {
             for (i, (id, normal)) in ids.iter().zip(&normals).enumerate() {
                 // Tops alone.
                 if *id > 0 && normal[2] > 0.9 {
-                    let at = DVec2::new((i % 600) as f64 + 0.5, (i / 600) as f64 + 0.5) - 300.0;
+                    let at = DVec2::new((i % 400) as f64 + 0.5, (i / 400) as f64 + 0.5) - 200.0;
                     sums[*id as usize].0 += at;
                     sums[*id as usize].1 += 1.0;
                 }
             }
-            sums.into_iter().map(|(sum, count)| (count > 20.0).then(|| sum / count)).collect::<Vec<_>>()
+            sums.into_iter().map(|(sum, count)| (count > 10.0).then(|| sum / count)).collect::<Vec<_>>()
         };
         let plain = centers(&mut studio, vec![]);
         let large = centers(&mut studio, vec![magnifier(ray)]);
@@ -196,7 +196,7 @@ fn things_are_as_many_times_as_large_as_the_lens_says() {
         for (plain, large) in plain.iter().zip(&large) {
             let (Some(plain), Some(large)) = (plain, large) else { continue };
             // Wholly in the core, and far enough from the middle to be measured.
-            if large.length() > 0.7 * 300.0 - 25.0 || plain.length() < 20.0 {
+            if large.length() > 0.7 * 200.0 - 17.0 || plain.length() < 13.0 {
                 continue;
             }
             let found = large.dot(*plain) / plain.length_squared();

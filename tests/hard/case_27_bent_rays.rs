@@ -386,31 +386,40 @@ fn a_feature_is_magnified_where_rays_to_its_focal_point_meet_it() {
         let picture = draw(&mut studio, &scene, size, Backend::Specialised);
         let ids = picture.object_id.expect("ids");
         let pixel = 2.0 * half.y / f64::from(size[1]);
-        // The core, from four places per pixel and side: rays to the focal point against the feature alone.
+        // The core, from three places per pixel and side: rays to the focal point against the feature alone.
         let alone: Vec<Face> = own.iter().map(|face| Face { corners: face.corners, object }).collect();
-        let fine = 4;
+        let fine = 3;
         let wide = [size[0] * fine, size[1] * fine].map(|side| side as usize);
         let fine_place = |i: usize| {
             let at = DVec2::new((i % wide[0]) as f64 + 0.5, (i / wide[0]) as f64 + 0.5) / f64::from(fine);
             DVec2::new(at.x * pixel - half.x, half.y - at.y * pixel)
         };
-        let core: Vec<DVec2> = (0..wide[0] * wide[1])
+        let is_core: Vec<bool> = (0..wide[0] * wide[1])
             .into_par_iter()
-            .map(fine_place)
-            .filter(|at| first(&alone, &plane.path(*at, 0.0, is_parallel)[1..], camera.near_m).is_some())
+            .map(|i| {
+                let path = plane.path(fine_place(i), 0.0, is_parallel);
+                first(&alone, &path[1..], camera.near_m).is_some()
+            })
             .collect();
+        // What is not in it is nearest to its rim.
+        let is_rim = |i: usize| {
+            let beside = [i.wrapping_sub(1), i + 1, i.wrapping_sub(wide[0]), i + wide[0]];
+            is_core[i] && beside.iter().any(|i| is_core.get(*i) != Some(&true))
+        };
+        let rim: Vec<DVec2> = (0..is_core.len()).filter(|i| is_rim(*i)).map(fine_place).collect();
         let width = band * 2.0 * half.y;
         // The lens has its core as texels of a field over all it bends, the reference as places: a share of each.
-        let reach = core.iter().map(|at| (*at - plane.center).abs().max_element()).fold(0.0, f64::max) + width;
+        let reach = rim.iter().map(|at| (*at - plane.center).abs().max_element()).fold(0.0, f64::max) + width;
         let off = (1.5 * 2.0 * reach / 512.0 + pixel / f64::from(fine)) / width;
         let found: Vec<(usize, bool)> = (0..ids.len())
             .into_par_iter()
             .map(|i| {
                 let at = sight.place(sight.pixel(i));
-                let away = core.iter().map(|from| from.distance_squared(at)).fold(f64::INFINITY, f64::min).sqrt();
-                let k = away / width;
+                let (x, y) = (fine as usize * (i % size[0] as usize) + 1, fine as usize * (i / size[0] as usize) + 1);
+                let from_rim = rim.iter().map(|from| from.distance_squared(at)).fold(f64::INFINITY, f64::min).sqrt();
+                let k = from_rim / width;
                 let (zone, ks): (usize, Vec<f64>) = match k {
-                    k if away < 0.25 * pixel => (0, vec![0.0, off.min(k)]),
+                    _ if is_core[y * wide[0] + x] => (0, vec![0.0, off]),
                     k if k > 1.0 + off => (2, vec![1.0]),
                     k => (1, (0..65).map(|s| (k + off * (f64::from(s) / 32.0 - 1.0)).clamp(0.0, 1.0)).collect()),
                 };
