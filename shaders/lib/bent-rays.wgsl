@@ -166,9 +166,9 @@ fn round_ray(lens: u32, across: vec2f) -> Ray {
     return Ray(vec3f(0.0), normalize(cosine * forward + slope * (place.x * right + place.y * up)));
 }
 
-// The path of a pixel's ray, at its beginning.
-fn path_of_pixel(pixel: vec2f) -> Path {
-    var across = across_of_pixel(pixel);
+// The path of a ray that begins at a place of the picture.
+fn path_of_place(place: vec2f) -> Path {
+    var across = place;
     var path: Path;
     for (var lens = 0u; lens < RAY_IMAGES; lens++) {
         let share = rim_share(lens, across);
@@ -229,9 +229,9 @@ fn bent_by_planes(across: vec2f, distance: f32) -> Ray {
     return path.ray;
 }
 
-// The line on which the ray of a pixel lies at a distance.
-fn bent_ray(pixel: vec2f, distance: f32) -> Ray {
-    var path = path_of_pixel(pixel);
+// The line on which the ray of a place of the picture lies at a distance.
+fn bent_ray(place: vec2f, distance: f32) -> Ray {
+    var path = path_of_place(place);
     for (var i = 0u; i < 2u * RAY_PLANES; i++) {
         if !path.is_round && ray_lenses.along[i].distance < distance {
             pass_event(&path, i);
@@ -244,17 +244,19 @@ fn see_pixel(pixel: vec2f, distance: f32) {
     seen_pixel = pixel;
     asked_pixel = pixel;
     seen_distance = distance;
-    seen_ray = bent_ray(pixel, distance);
+    seen_ray = bent_ray(across_of_pixel(pixel), distance);
 }
 
 // The place of the picture, (x, y, -1), of the pixel whose ray this is; and where, without lenses that bend rays, what its ray meets at a distance is
 // seen.
 fn picture_place(ray: Ray) -> vec3f {
-    return vec3f(across_of_pixel(asked_pixel), -1.0);
+    // That of what is looked at is known, whatever was asked for since.
+    let is_seen = all(ray.origin == seen_ray.origin) && all(ray.direction == seen_ray.direction);
+    return vec3f(across_of_pixel(select(asked_pixel, seen_pixel, is_seen)), -1.0);
 }
 
 fn picture_place_at(distance: f32, place: vec3f) -> vec3f {
-    let ray = bent_ray(asked_pixel, distance);
+    let ray = bent_ray(place.xy, distance);
     let at = ray.origin.xy + distance * ray.direction.xy;
     let seen = select(at / distance, at, view.orthographic == 1u);
     let is_round = ray.direction.z != -1.0;
@@ -267,11 +269,11 @@ fn ray_of_pixel(pixel: vec2f) -> Ray {
     if all(pixel == seen_pixel) {
         return seen_ray;
     }
-    return bent_ray(pixel, seen_distance);
+    return bent_ray(across_of_pixel(pixel), seen_distance);
 }
 
 // At that of something else.
 fn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {
     asked_pixel = pixel;
-    return bent_ray(pixel, select(FAR_AWAY, distance, distance > 0.0));
+    return bent_ray(across_of_pixel(pixel), select(FAR_AWAY, distance, distance > 0.0));
 }

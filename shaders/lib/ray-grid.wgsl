@@ -7,7 +7,7 @@ const GRID_OPACITY: f32 = 0.55;
 // Where a pixel is in a grid, in steps of it.
 fn grid_place(lens: u32, pixel: vec2f) -> vec2f {
     let distance = min(seen_distance, 1e9);
-    let ray = bent_ray(pixel, distance);
+    let ray = bent_ray(across_of_pixel(pixel), distance);
     let at = ray.origin.xy + distance * ray.direction.xy;
     let flat = (select(at / distance, at, view.orthographic == 1u) - ray_lenses.lenses[lens].center) / ray_lenses.lenses[lens].grid;
     let d = ray.direction;

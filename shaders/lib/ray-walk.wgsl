@@ -262,7 +262,7 @@ fn first_in_city(at: vec2f, number: u32, line: Ray, range: vec2f, best: Hit) -> 
 
 // The first that the ray of a pixel meets nearer than `last`.
 fn first_of_pixel(at: vec2f, last: Hit) -> Hit {
-    var path = path_of_pixel(at);
+    var path = path_of_place(across_of_pixel(at));
     var found = last;
     var begin = view.near;
     let count = select(2u * RAY_PLANES, 0u, path.is_round);
@@ -292,7 +292,7 @@ fn rest_of(hit: Hit) -> u32 {
 
 // The weights of the corners where a line meets the plane of a triangle.
 fn weights_beside(at: vec2f, hit: Hit) -> vec2f {
-    let ray = city_ray(hit.city, bent_ray(at, hit.t));
+    let ray = city_ray(hit.city, bent_ray(across_of_pixel(at), hit.t));
     let a = sheared(hit.city, ray, ray_words[hit.triangle]);
     let b = sheared(hit.city, ray, ray_words[hit.triangle + 1u]);
     let c = sheared(hit.city, ray, ray_words[hit.triangle + 2u]);

@@ -15,7 +15,7 @@
 //! where f has one, and of several lenses that a ray meets powers add: one that makes things smaller by as much undoes another one.
 //! The focal point lies on the line of sight through the lens' middle, not straight before it: what is in the middle stays there.
 
-use std::sync::Arc;
+use std::{collections::BTreeMap, sync::Arc};
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -370,6 +370,19 @@ impl RayPaths {
     }
 }
 
+impl RayPaths {
+    /// By lens, where there are any, the thousandths of what it changes in which rays cross, so that things are seen more than once there (Wang et al. §3.2,
+    /// whose condition is that of a Jacobian above 0: nothing is folded iff `a(a + τ(P−F)·∇k) > 0`, `a = 1 − τ(1−k)`, τ what the core takes). Deepest down it is
+    /// the most.
+    pub fn folds(&self) -> BTreeMap<u32, u32> {
+        let of = |lens: &PlaneLens| {
+            let share = lens.folded(self.is_parallel);
+            (share > 0.0).then(|| (lens.lens, (1000.0 * share).round().max(1.0) as u32))
+        };
+        self.planes.iter().filter_map(of).collect()
+    }
+}
+
 /// What lenses that bend rays ask of a city.
 pub struct Scenery<'a> {
     /// D of what is seen at a place of the picture without them, metres; `None`: nothing.
@@ -399,6 +412,32 @@ impl PlaneLens {
         let e = if is_parallel { 0.0 } else { self.distance.recip() };
         let z = d.min(self.until) - self.distance;
         z * self.power / (1.0 + z * e)
+    }
+
+    /// The part of what it changes in which the rays that it bends cross.
+    fn folded(&self, is_parallel: bool) -> f64 {
+        let taken = self.taken(self.until, is_parallel);
+        let Some(field) = &self.rim.field else {
+            // a + τ(P−F)·∇k = 1 + τ(2s − 1)/b at a share s in the band.
+            let from = (0.5 * (1.0 - self.border / taken)).max(1.0 - self.border);
+            return if taken < 0.0 && self.border > 0.0 { 1.0 - from.min(1.0).powi(2) } else { 0.0 };
+        };
+        let (mut changed, mut folded) = (0_u32, 0_u32);
+        let side = share_field::SIDE;
+        let at = |x: usize, y: usize| f64::from(field.texels[y * side + x]);
+        for (x, y) in (1..side - 1).flat_map(|y| (1..side - 1).map(move |x| (x, y))) {
+            let k = at(x, y);
+            if k >= 1.0 {
+                continue;
+            }
+            changed += 1;
+            // By texels, as the place is.
+            let slope = 0.5 * DVec2::new(at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1));
+            let from = DVec2::new(x as f64, y as f64) + 0.5 - 0.5 * side as f64;
+            let a = 1.0 - taken * (1.0 - k);
+            folded += u32::from(a * (a + taken * from.dot(slope)) <= 0.0);
+        }
+        f64::from(folded) / f64::from(changed.max(1))
     }
 
     /// Where its core shows a place of view space behind its plane, in the picture's plane.
@@ -664,6 +703,77 @@ mod tests {
                 // A line through the middle stays one.
                 let half = direction(0.5, turn);
                 assert!(half.truncate().perp_dot(DVec2::from_angle(turn)).abs() < 1e-12);
+            }
+        }
+    }
+
+    /// A letter C of boxes' fronts, view space, and its convex hull's.
+    fn letter(is_open: bool) -> Vec<[DVec3; 3]> {
+        let rectangle = |low: DVec2, high: DVec2| {
+            let corner = |x, y| DVec3::new(x, y, -100.0);
+            let [a, b] = [corner(low.x, low.y), corner(high.x, low.y)];
+            let [c, d] = [corner(high.x, high.y), corner(low.x, high.y)];
+            [[a, b, c], [a, c, d]]
+        };
+        let parts = match is_open {
+            true => vec![([-12.0, -12.0], [-6.0, 12.0]), ([-6.0, 6.0], [14.0, 12.0]), ([-6.0, -12.0], [14.0, -6.0])],
+            false => vec![([-12.0, -12.0], [14.0, 12.0])],
+        };
+        parts.into_iter().flat_map(|(low, high)| rectangle(low.into(), high.into())).collect()
+    }
+
+    /// The part of what a lens changes whose cells, of a grid, are shown turned round: by what becomes of their corners.
+    fn turned_round(paths: &RayPaths) -> f64 {
+        let lens = &paths.planes[0];
+        let (rim, steps) = (&lens.rim, 300);
+        let place =
+            |x: i32, y: i32| rim.center + rim.radius * (2.0 * DVec2::new(x.into(), y.into()) / f64::from(steps) - 1.0);
+        let shown = |at: DVec2| seen(paths, at, 2.0 * lens.until);
+        let (mut changed, mut turned) = (0, 0);
+        for (x, y) in (0..steps).flat_map(|y| (0..steps).map(move |x| (x, y))) {
+            if rim.share(place(x, y)) >= 1.0 {
+                continue;
+            }
+            changed += 1;
+            let [a, b, c] = [(x, y), (x + 1, y), (x, y + 1)].map(|(x, y)| shown(place(x, y)));
+            turned += i32::from((b - a).perp_dot(c - a) <= 0.0);
+        }
+        f64::from(turned) / f64::from(changed)
+    }
+
+    #[test]
+    fn crossing_rays_are_told_where_there_are_some() {
+        for is_parallel in [false, true] {
+            let plain = |magnification, border, outline| {
+                let bend = Magnify { magnification, at: Some(60.0), distance: Some(40.0), border };
+                let lens = RayLens { bend: Bend::Magnify(bend), outline, ..RayLens::magnifier() };
+                paths(&[lens], is_parallel)
+            };
+            for outline in [RayOutline::Circle, RayOutline::Square] {
+                // With 1 / 0.8 - 1 = 0.25 of the radius nothing crosses.
+                for (magnification, border) in
+                    [(3.0, 0.05), (0.8, 0.26), (0.8, 0.24), (0.8, 0.1), (0.4, 1.0), (0.3, 0.6)]
+                {
+                    let paths = plain(magnification, border, outline);
+                    let (found, expected) = (paths.planes[0].folded(is_parallel), turned_round(&paths));
+                    // Cells of 1/300 along the border of what crosses.
+                    assert!((found - expected).abs() < 0.02, "{magnification}, {border}: {found}, {expected}");
+                    assert_eq!(found > 0.0, magnification < 1.0 && border < 1.0 / magnification - 1.0);
+                }
+            }
+            for (is_open, magnification, radius) in
+                [(false, 3.0, 0.05), (true, 1.2, 0.3), (true, 3.0, 0.08), (true, 2.5, 0.05)]
+            {
+                let magnify = Magnify { magnification, at: Some(60.0), distance: Some(40.0), border: 1.0 };
+                let bend = Bend::Feature(Feature { magnify, of: Choice::default() });
+                let lens = RayLens { bend, radius, ..RayLens::feature() };
+                let feature = |_: &Choice| letter(is_open);
+                let scenery = Scenery { shown: &|_| None, feature: &feature };
+                let paths = RayPaths::new(&[(5, &lens, [0.0; 3])], &frame(is_parallel), &scenery);
+                let expected = turned_round(&paths);
+                let found = paths.folds().get(&5).map_or(0.0, |share| f64::from(*share) / 1000.0);
+                assert!((found - expected).abs() < 0.03, "{is_open} {magnification}, {radius}: {found}, {expected}");
+                assert_eq!(found > 0.0, is_open && magnification > 2.0, "{is_open} {magnification}: {found}");
             }
         }
     }

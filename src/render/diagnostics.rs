@@ -18,8 +18,18 @@ use crate::{
 };
 
 /// The codes.
-pub const CODES: [&str; 9] =
-    [SPRITE_LAYERS, OPEN_SHELLS, NOT_DERIVED, NOTHING_DERIVED, DERIVED_INSTEAD, WEAKENED, LAYER_ROOM, COARSE, NO_GLYPH];
+pub const CODES: [&str; 10] = [
+    SPRITE_LAYERS,
+    OPEN_SHELLS,
+    NOT_DERIVED,
+    NOTHING_DERIVED,
+    DERIVED_INSTEAD,
+    WEAKENED,
+    LAYER_ROOM,
+    COARSE,
+    NO_GLYPH,
+    SEEN_TWICE,
+];
 
 /// Rays have more intervals than a sprite has layers.
 const SPRITE_LAYERS: &str = "sprite-layers";
@@ -46,6 +56,9 @@ pub(super) fn not_derived(contents: &SceneContents) -> [BTreeMap<u32, u32>; 3] {
         counts.filter(|(_, count)| *count > 0).collect()
     })
 }
+
+/// A lens that bends rays shows things more than once.
+const SEEN_TWICE: &str = "rays-fold";
 
 /// Translucent fragments found no room.
 const LAYER_ROOM: &str = "layer-room";
@@ -184,6 +197,16 @@ const DIAGNOSTICS: &[Diagnostic] = &[
         message: |lens, permille| {
             let percent = f64::from(permille) / 10.0;
             format!("lens \"{lens}\" would fold space: used at {percent} % of its strength")
+        },
+    },
+    Diagnostic {
+        code: SEEN_TWICE,
+        counts: |picture| &picture.folded,
+        message: |lens, permille| {
+            let percent = f64::from(permille) / 10.0;
+            format!(
+                "lens \"{lens}\" shows things more than once, turned round in {percent} % of what it changes; a wider band (border, of a feature lens radius) or a magnification nearer to 1 would not"
+            )
         },
     },
 ];

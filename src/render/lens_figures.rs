@@ -95,7 +95,8 @@ impl Picture {
         if drawn.owners.is_none() {
             return;
         }
-        let counts = [&mut self.excess, &mut self.open, &mut self.weakened].into_iter().chain(&mut self.not_derived);
+        let counts = [&mut self.excess, &mut self.open, &mut self.weakened, &mut self.folded];
+        let counts = counts.into_iter().chain(&mut self.not_derived);
         for counts in counts {
             let of_drawn = std::mem::take(counts);
             of_drawn.into_iter().for_each(|(lens, count)| *counts.entry(drawn.owner(lens)).or_default() += count);

@@ -141,6 +141,8 @@ pub struct Picture {
     pub(super) not_derived: [BTreeMap<u32, u32>; 3],
     /// By lens the thousandths of its strength at which its deformation is used, where it would fold space.
     pub(super) weakened: BTreeMap<u32, u32>,
+    /// By lens the thousandths of what it changes in which it shows things turned round, since the rays that it bends cross.
+    pub(super) folded: BTreeMap<u32, u32>,
     /// What deformations took.
     pub(super) deformed: Option<DeformedFigures>,
     /// How lenses bend rays in it.
@@ -435,6 +437,7 @@ impl Studio {
         picture.not_derived = diagnostics::not_derived(&resolved.contents);
         picture.weakened = resolved.deformations.weakened.clone();
         picture.deformed = self.renderer.deformed_figures();
+        picture.folded = resolved.rays.folds();
         picture.rays = resolved.rays.clone();
         picture.without_glyph = diagnostics::without_glyph(furniture);
         if request.statistics {

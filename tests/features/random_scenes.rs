@@ -132,7 +132,11 @@ fn both_back_ends_bend_rays_through_random_scenes_the_same() {
     let mut studio = of_scene(&parse_city(city));
     let (mut count, mut wrong) = (0, Vec::new());
     // Families of their own.
-    let all: Vec<u64> = seeds().into_iter().map(|seed| seed + 2000 * FAMILY).collect();
+    let mut all: Vec<u64> = seeds().into_iter().map(|seed| seed + 2000 * FAMILY).collect();
+    if !is_thorough() {
+        // Programs of both back ends take long to compile.
+        all.truncate(2);
+    }
     for seed in &all {
         let bends = bends(if is_thorough() { *seed } else { seed / FAMILY });
         let text = format!("{}\n[[lens]]\nname = \"b0\"\n{bends}\n", scene(*seed, city, wanted));

@@ -102,3 +102,25 @@ fn bent_rays_in_extreme_views_are_the_same_by_both_back_ends() {
     println!("{pictures} pictures");
     assert!(pictures > 20);
 }
+
+#[test]
+fn rays_that_cross_are_told_of() {
+    let mut studio = studio::synthetic(20);
+    let camera =
+        Camera::looking(studio.extent().center() + DVec3::new(0.0, -90.0, 60.0), studio.extent().center(), 1.0);
+    let mut told = |border: f64| {
+        let scene = studio::scene(
+            camera,
+            vec![magnifier(magnify(0.5, 40.0, 40.0, border)), magnifier(magnify(4.0, 40.0, 40.0, 0.2))],
+        );
+        let request = Request { statistics: true, ..Request::plain([32, 24]) };
+        let picture = studio.render(&scene, &request).expect("a picture");
+        let warnings = picture.statistics.warnings.iter().filter(|warning| warning["code"] == "rays-fold");
+        warnings
+            .map(|warning| (warning["count"].as_u64(), warning["objects"].as_array().map_or(0, Vec::len)))
+            .collect::<Vec<_>>()
+    };
+    // Nothing is narrower than 1 / 0.5 - 1; of a half of that from 3/4 of the radius on things are turned round.
+    assert_eq!(told(1.0), []);
+    assert_eq!(told(0.5), [(Some(438), 1)]);
+}
