@@ -1,5 +1,7 @@
 //! Lenses that bend rays: where they stand in the picture, and what they do to the rays that come through them (Wang et al. §3).
 
+use std::path::PathBuf;
+
 use glam::DVec2;
 
 use crate::lens::chosen::Choice;
@@ -13,6 +15,8 @@ pub struct RayLens {
     pub radius: f64,
     /// Its outline in the picture.
     pub outline: RayOutline,
+    /// An image whose light pixels are its outline, in place of that: over the square around it, as large as its longer side lets it be; of a magnifier.
+    pub mask: Option<PathBuf>,
     /// How it bends them.
     pub bend: Bend,
     /// How what it shows is found.
@@ -119,6 +123,7 @@ impl RayLens {
             center: DVec2::splat(0.5),
             radius: 0.25,
             outline: RayOutline::Circle,
+            mask: None,
             bend,
             method: RayMethod::Rays,
             grid: false,

@@ -15,7 +15,7 @@
 //! where f has one, and of several lenses that a ray meets powers add: one that makes things smaller by as much undoes another one.
 //! The focal point lies on the line of sight through the lens' middle, not straight before it: what is in the middle stays there.
 
-use std::{collections::BTreeMap, sync::Arc};
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -166,7 +166,7 @@ impl PictureFrame {
 
     /// What is seen through a lens before it bends rays, in camera coordinates: a flat figure just before all that is seen; `None`: it has no outline.
     pub fn figure(&self, lens: &RayLens) -> Option<Shape> {
-        if matches!(lens.bend, Bend::Feature(_)) {
+        if matches!(lens.bend, Bend::Feature(_)) || lens.mask.is_some() {
             return None;
         }
         let rim = self.rim(lens);
@@ -197,7 +197,8 @@ impl RayPaths {
     pub fn new(lenses: &[(u32, &RayLens, [f32; 3])], frame: &PictureFrame, scenery: &Scenery) -> Self {
         let mut paths = Self { is_parallel: frame.is_parallel, ..Self::default() };
         for &(number, lens, color) in lenses {
-            let rim = Rim { grid: lens.grid.then_some(color), ..frame.rim(lens) };
+            let field = lens.mask.as_ref().and_then(|file| (scenery.mask)(file));
+            let rim = Rim { grid: lens.grid.then_some(color), field, ..frame.rim(lens) };
             if rim.radius.is_nan() || rim.radius <= 0.0 {
                 continue;
             }
@@ -387,6 +388,8 @@ impl RayPaths {
 pub struct Scenery<'a> {
     /// D of what is seen at a place of the picture without them, metres; `None`: nothing.
     pub shown: &'a dyn Fn(DVec2) -> Option<f64>,
+    /// That of an image, which is known.
+    pub mask: &'a dyn Fn(&Path) -> Option<Arc<ShareField>>,
     /// The triangles of a choice, view space.
     pub feature: &'a dyn Fn(&Choice) -> Vec<[DVec3; 3]>,
 }
@@ -426,13 +429,17 @@ impl PlaneLens {
         let side = share_field::SIDE;
         let at = |x: usize, y: usize| f64::from(field.texels[y * side + x]);
         for (x, y) in (1..side - 1).flat_map(|y| (1..side - 1).map(move |x| (x, y))) {
-            let k = at(x, y);
-            if k >= 1.0 {
+            if at(x, y) >= 1.0 {
                 continue;
             }
             changed += 1;
+            let in_band = (at(x, y) - (1.0 - self.border)) / self.border;
+            if self.border == 0.0 || in_band <= 0.0 {
+                continue;
+            }
+            let k = in_band;
             // By texels, as the place is.
-            let slope = 0.5 * DVec2::new(at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1));
+            let slope = 0.5 / self.border * DVec2::new(at(x + 1, y) - at(x - 1, y), at(x, y + 1) - at(x, y - 1));
             let from = DVec2::new(x as f64, y as f64) + 0.5 - 0.5 * side as f64;
             let a = 1.0 - taken * (1.0 - k);
             folded += u32::from(a * (a + taken * from.dot(slope)) <= 0.0);
@@ -513,7 +520,11 @@ mod tests {
 
     fn paths(lenses: &[RayLens], is_parallel: bool) -> RayPaths {
         let numbered: Vec<_> = (0..).zip(lenses).map(|(number, lens)| (number, lens, [0.0; 3])).collect();
-        RayPaths::new(&numbered, &frame(is_parallel), &Scenery { shown: &|_| None, feature: &|_| Vec::new() })
+        RayPaths::new(
+            &numbered,
+            &frame(is_parallel),
+            &Scenery { shown: &|_| None, mask: &|_| None, feature: &|_| Vec::new() },
+        )
     }
 
     /// Where the path of a place is at a distance, as the picture without lenses has it.
@@ -655,7 +666,7 @@ mod tests {
             let paths = RayPaths::new(
                 &[(3, &lens, [0.0; 3])],
                 &frame(false),
-                &Scenery { shown: &|_| Some(100.0), feature: &|_| Vec::new() },
+                &Scenery { shown: &|_| Some(100.0), mask: &|_| None, feature: &|_| Vec::new() },
             );
             (paths.planes[0].lens, paths.planes[0].distance, paths.planes[0].until)
         };
@@ -768,7 +779,7 @@ mod tests {
                 let bend = Bend::Feature(Feature { magnify, of: Choice::default() });
                 let lens = RayLens { bend, radius, ..RayLens::feature() };
                 let feature = |_: &Choice| letter(is_open);
-                let scenery = Scenery { shown: &|_| None, feature: &feature };
+                let scenery = Scenery { shown: &|_| None, mask: &|_| None, feature: &feature };
                 let paths = RayPaths::new(&[(5, &lens, [0.0; 3])], &frame(is_parallel), &scenery);
                 let expected = turned_round(&paths);
                 let found = paths.folds().get(&5).map_or(0.0, |share| f64::from(*share) / 1000.0);

@@ -20,6 +20,18 @@ impl ShareField {
         Self { texels: squared_distances(core).into_iter().map(share).collect() }
     }
 
+    /// That of a lens whose outline a mask is: 1 outside, and less inside by how far that is, in halves of a side.
+    pub fn of_mask(mask: &[bool]) -> Self {
+        let outside: Vec<bool> = mask.iter().map(|is_in| !is_in).collect();
+        let texel = 2.0 / SIDE as f64;
+        let texels = squared_distances(&outside).into_iter().enumerate().map(|(i, squared)| {
+            // Beyond the square is outside, too; the outline goes between texels.
+            let to_side = [i % SIDE, i / SIDE].into_iter().map(|k| k.min(SIDE - 1 - k) + 1).min().unwrap_or(0) as f64;
+            (1.0 - (squared.sqrt().min(to_side) - 0.5).max(0.0) * texel) as f32
+        });
+        Self { texels: texels.collect() }
+    }
+
     /// The share at a place, in halves of a side from the middle: between texels linearly; outside of the square that at its border.
     pub fn at(&self, place: DVec2) -> f64 {
         let at = ((0.5 * place + 0.5) * SIDE as f64 - 0.5).clamp(DVec2::ZERO, DVec2::splat(SIDE as f64 - 1.0));
@@ -159,6 +171,20 @@ mod tests {
         }
         let corner = field.at(DVec2::splat(0.25 + 0.3));
         assert!((corner - 0.3 * 2.0_f64.sqrt() / 0.5).abs() < 0.02, "{corner}");
+    }
+
+    #[test]
+    fn a_round_mask_is_a_round_lens() {
+        let middle = |k: usize| (k as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0;
+        let mask: Vec<bool> = (0..SIDE * SIDE).map(|i| middle(i % SIDE).hypot(middle(i / SIDE)) < 0.8).collect();
+        let field = ShareField::of_mask(&mask);
+        for place in [[0.0, 0.0], [0.3, 0.1], [-0.5, 0.5], [0.1, -0.75]].map(DVec2::from) {
+            let expected = 1.0 - (0.8 - place.length());
+            assert!((field.at(place) - expected).abs() < 1.5 * 2.0 / SIDE as f64, "{place}: {}", field.at(place));
+        }
+        assert_eq!(field.at(DVec2::new(0.9, 0.2)), 1.0);
+        let all = ShareField::of_mask(&vec![true; SIDE * SIDE]);
+        assert!((all.at(DVec2::new(0.7, -0.2)) - 0.7).abs() < 2.0 / SIDE as f64, "the square ends it");
     }
 
     #[test]

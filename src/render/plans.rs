@@ -80,7 +80,10 @@ impl Plans {
             parts: of_lens().filter_map(|volumes| part_of(volumes.iter())).collect(),
             rooms: of_lens().map(room).collect(),
             silhouettes: of_lens()
-                .map(|volumes| Silhouette::of(volumes.iter().map(|v| &input.volumes[v.index])))
+                .map(|volumes| match input.rays.is_empty() {
+                    true => Silhouette::of(volumes.iter().map(|v| &input.volumes[v.index])),
+                    false => Silhouette::default(),
+                })
                 .collect(),
             invokers: OnceCell::new(),
             filters,

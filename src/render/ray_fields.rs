@@ -1,5 +1,10 @@
 //! Fields of lenses that bend rays, in place of outlines, on the GPU: one below the other in one texture.
 
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
 use crate::{
     gpu::Gpu,
     lens::share_field::{SIDE, ShareField},
@@ -43,5 +48,41 @@ impl RayFields {
         self.held = all().copied().collect();
         gpu.write_texture_level(&self.texture, 0, bytemuck::cast_slice(&self.held));
         is_other
+    }
+}
+
+/// Fields of images, kept from picture to picture.
+#[derive(Debug, Default)]
+pub(super) struct RayMasks(Vec<(PathBuf, Arc<ShareField>)>);
+
+impl RayMasks {
+    /// Makes that of an image known, where it is not.
+    ///
+    /// # Errors
+    /// It cannot be read, or has no light pixels.
+    pub fn load(&mut self, file: &Path) -> Result<(), String> {
+        if self.get(file).is_some() {
+            return Ok(());
+        }
+        let wrong = |message: String| format!("{}: {message}", file.display());
+        let image = image::open(file).map_err(|error| wrong(error.to_string()))?.into_luma8();
+        let longer = f64::from(image.width().max(image.height()));
+        let texel = |i: usize| {
+            // Places in pixels from the image's middle; rows go from low to high y.
+            let [x, y] = [i % SIDE, SIDE - 1 - i / SIDE].map(|k| ((k as f64 + 0.5) / SIDE as f64 - 0.5) * longer);
+            let [x, y] = [x + 0.5 * f64::from(image.width()), y + 0.5 * f64::from(image.height())];
+            x >= 0.0 && y >= 0.0 && image.get_pixel_checked(x as u32, y as u32).is_some_and(|pixel| pixel.0[0] >= 128)
+        };
+        let mask: Vec<bool> = (0..SIDE * SIDE).map(texel).collect();
+        if !mask.contains(&true) {
+            return Err(wrong("no pixel is light; light pixels are the outline".to_owned()));
+        }
+        self.0.push((file.to_owned(), Arc::new(ShareField::of_mask(&mask))));
+        Ok(())
+    }
+
+    /// That of an image.
+    pub fn get(&self, file: &Path) -> Option<Arc<ShareField>> {
+        self.0.iter().find(|(of, _)| of == file).map(|(_, field)| field.clone())
     }
 }

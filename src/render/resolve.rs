@@ -31,6 +31,7 @@ use crate::{
         parts::whole,
         placed_region::Leaf,
         placement::Eye,
+        ray_fields::RayMasks,
         regions,
         sights::sights,
         solids::SolidTable,
@@ -69,6 +70,8 @@ pub(super) struct Known {
     /// Contents of lenses loaded so far.
     pub contents: ContentCities,
     pub deformations: KnownDeformations,
+    /// Outlines of lenses that bend rays, by their images.
+    pub ray_masks: RayMasks,
     /// The city where they last showed it.
     pub displayed: LastDisplayed,
 }
@@ -157,7 +160,7 @@ impl Surroundings<'_> {
         let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved)).union(moving.bounds);
         let mut view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
-        let rays = self.rays(scene, &view)?;
+        let rays = self.rays(scene, &view, &mut known.ray_masks)?;
         refuse_with_rays(scene, &rays)?;
         view.looks_around = rays.looks_around();
         if view.looks_around && view.is_orthographic() {
@@ -170,7 +173,7 @@ impl Surroundings<'_> {
     }
 
     /// The lenses that bend rays.
-    fn rays(&self, scene: &Scene, view: &View) -> Result<RayPaths, ResolveError> {
+    fn rays(&self, scene: &Scene, view: &View, masks: &mut RayMasks) -> Result<RayPaths, ResolveError> {
         let enabled = (0..).zip(&scene.lenses).filter(|(_, lens)| lens.enabled);
         let lenses: Vec<(u32, &RayLens, [f32; 3])> =
             enabled.filter_map(|(i, lens)| Some((i, lens.ray()?, lens.color))).collect();
@@ -179,6 +182,9 @@ impl Surroundings<'_> {
                 "{} lenses bend rays; one picture takes {MOST_RAY_LENSES}",
                 lenses.len()
             )));
+        }
+        for file in lenses.iter().filter_map(|(_, ray, _)| ray.mask.as_deref()) {
+            masks.load(file).map_err(|error| ResolveError::Scene(format!("ray: mask: {error}")))?;
         }
         let frame = PictureFrame::new(&view.camera, view.size);
         let half = frame.half;
@@ -189,7 +195,7 @@ impl Surroundings<'_> {
             Some(index.hit(self.city.model, &view.ray(pixel))?.t)
         };
         let feature = |choice: &Choice| self.triangles_of(choice, view);
-        Ok(RayPaths::new(&lenses, &frame, &Scenery { shown: &shown, feature: &feature }))
+        Ok(RayPaths::new(&lenses, &frame, &Scenery { shown: &shown, mask: &|file| masks.get(file), feature: &feature }))
     }
 
     /// The triangles of the objects that are shown and that a choice means, view space.

@@ -83,6 +83,18 @@ const RAY_ROWS: &[Row<RayLens>] = &[
     ),
     Row::<RayLens>::new(
         key(
+            "mask",
+            Kind::Text,
+            "none",
+            "",
+            "Of a magnifier: an image whose light pixels are its outline, in place of `outline`. Its middle is that of the lens, and its longer side twice `radius`.",
+            "\"leaf.png\"",
+        ),
+        |lens, options| lens.mask.as_ref().map(|file| Data::Text(options.written(file))),
+        |lens, given| lens.mask = given.file(),
+    ),
+    Row::<RayLens>::new(
+        key(
             "magnification",
             Kind::Number { min: 0.1, max: 1000.0 },
             "2.5",
@@ -259,7 +271,8 @@ fn rate_problem(points: &[DVec2]) -> Option<String> {
 }
 
 /// The keys that only some kinds have, and the words of these.
-const OF_KINDS: [(&str, &[&str]); 10] = [
+const OF_KINDS: [(&str, &[&str]); 11] = [
+    ("mask", &["magnifier"]),
     ("magnification", &["magnifier", "feature", "sampling"]),
     ("distance", &["magnifier", "feature"]),
     ("at", &["magnifier", "feature"]),
@@ -309,6 +322,14 @@ pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<Ray
         let all = kinds.iter().map(|kind| format!("\"{kind}\"")).collect::<Vec<_>>().join(" or ");
         let message = format!("has a meaning only for a lens of kind = {all}");
         reader.checker.note(&own.place, key, own.line(key), message);
+    }
+    if own.given("mask") && own.given("outline") {
+        let message = "is given together with outline: a lens has one of them";
+        reader.checker.note(&own.place, "mask", own.line("mask"), message);
+    }
+    if (own.given("mask") || own.given("of")) && fields.given("effects") {
+        let message = "has no meaning for a lens that bends rays in an outline of its own: another lens may have some";
+        reader.checker.note(&fields.place, "effects", fields.line("effects"), message);
     }
     if let Some(points) = own.node("rate").and_then(|node| node.list()) {
         let points: Vec<DVec2> = points.iter().filter_map(|p| p.numbers::<2>().map(DVec2::from)).collect();

@@ -401,12 +401,16 @@ fn ray_lenses() -> impl Strategy<Value = LensKind> {
         Bend::Fisheye(Fisheye { angle, projection })
     });
     let bend = prop_oneof![magnify, feature, sample, fisheye];
-    let place = (prop::array::uniform2(0.0..=1.0f64), 0.001..4.0f64, any::<bool>(), any::<bool>());
-    (bend, place).prop_map(|(bend, (center, radius, is_square, grid))| {
+    let mask = prop::option::of("[a-zß]{1,6}[.]png");
+    let place = (prop::array::uniform2(0.0..=1.0f64), 0.001..4.0f64, any::<bool>(), any::<bool>(), mask);
+    (bend, place).prop_map(|(bend, (center, radius, is_square, grid, mask))| {
         let outline = if is_square { RayOutline::Square } else { RayOutline::Circle };
         let mut ray = RayLens { radius, grid, ..RayLens::new(bend) };
         if !matches!(ray.bend, Bend::Feature(_)) {
             (ray.center, ray.outline) = (center.into(), outline);
+        }
+        if matches!(ray.bend, Bend::Magnify(_)) && !is_square {
+            ray.mask = mask.map(Into::into);
         }
         match &ray.bend {
             Bend::Feature(_) => FeatureLens { ray }.into(),

@@ -535,6 +535,8 @@ fn every_mistake_in_a_lens_that_bends_rays_is_named() {
         ("feature", "magnification = 3", "ray.of: is missing: what the lens magnifies"),
         ("feature", "of = { ids = [\"a\"] }, center = [0.2, 0.2]", "ray.center: has a meaning only for a lens of kind"),
         ("magnifier", "of = { ids = [\"a\"] }", "ray.of: has a meaning only for a lens of kind = \"feature\""),
+        ("fisheye", "mask = \"a.png\"", "ray.mask: has a meaning only for a lens of kind = \"magnifier\""),
+        ("magnifier", "mask = \"a.png\", outline = \"square\"", "ray.mask: is given together with outline"),
         ("magnifier", "radious = 2", "ray.radious: unknown key; did you mean \"radius\"?"),
     ] {
         let message = of(kind, ray).unwrap_err();
@@ -543,6 +545,13 @@ fn every_mistake_in_a_lens_that_bends_rays_is_named() {
     assert_eq!(of("magnifier", "magnification = 4, at = 30, distance = 20, border = 0"), Ok(()));
     assert_eq!(of("sampling", "rate = [[0, 4], [1, 1]]"), Ok(()));
     assert_eq!(of("fisheye", "angle_deg = 360"), Ok(()));
+    assert_eq!(of("magnifier", "mask = \"a.png\""), Ok(()));
+    let text = lens_text("kind = \"magnifier\"\nray = { mask = \"a.png\" }\neffects = [\"sepia\"]");
+    let message = read_text(&text).map(|_| ()).unwrap_err();
+    assert!(
+        message.contains("effects: has no meaning for a lens that bends rays in an outline of its own"),
+        "{message}"
+    );
 }
 
 #[test]

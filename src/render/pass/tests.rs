@@ -237,8 +237,11 @@ fn effects_call_for_their_own_passes_alone() {
 fn lenses_that_bend_rays_call_for_a_pass_where_they_are_seen_and_bend_any() {
     let passes = |lens: &RayLens| {
         let frame = PictureFrame { half: DVec2::splat(0.5), is_parallel: false, near: 0.5 };
-        let rays =
-            RayPaths::new(&[(0, lens, [0.0; 3])], &frame, &Scenery { shown: &|_| None, feature: &|_| Vec::new() });
+        let rays = RayPaths::new(
+            &[(0, lens, [0.0; 3])],
+            &frame,
+            &Scenery { shown: &|_| None, mask: &|_| None, feature: &|_| Vec::new() },
+        );
         Asked { rays, ..Asked::nothing() }.passes()
     };
     let lens = RayLens::magnifier();
