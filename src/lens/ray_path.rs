@@ -198,7 +198,10 @@ impl RayPaths {
         let mut paths = Self { is_parallel: frame.is_parallel, ..Self::default() };
         for &(number, lens, color) in lenses {
             let field = lens.mask.as_ref().and_then(|file| (scenery.mask)(file));
-            let rim = Rim { grid: lens.grid.then_some(color), field, ..frame.rim(lens) };
+            let plain = frame.rim(lens);
+            // An image goes to the corners of its square.
+            let outline = if field.is_some() { RayOutline::Square } else { plain.outline };
+            let rim = Rim { grid: lens.grid.then_some(color), field, outline, ..plain };
             if rim.radius.is_nan() || rim.radius <= 0.0 {
                 continue;
             }

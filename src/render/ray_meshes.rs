@@ -131,8 +131,8 @@ impl RayMeshes {
     pub fn fit(&mut self, gpu: &Gpu, plan: &FramePlan, cities: &Cities) -> Result<bool, GpuError> {
         let drawn = cities.drawn_sections(&plan.details, plan.cuts.picture.as_ref());
         let groups = groups_of(&drawn);
-        let mut before = std::mem::take(&mut self.meshes);
-        let (mut is_other, count_before) = (false, before.len());
+        let mut before: Vec<Option<Mesh>> = std::mem::take(&mut self.meshes).into_iter().map(Some).collect();
+        let mut is_other = false;
         self.standing.clear();
         self.images.clear();
         for group in &groups {
@@ -141,12 +141,12 @@ impl RayMeshes {
             let mesh = match known {
                 Some(mesh) => mesh,
                 None => {
-                    let mesh = match before.iter().position(|mesh| mesh.of == of) {
-                        Some(kept) => before.swap_remove(kept),
-                        None => {
-                            is_other = true;
-                            Mesh::new(gpu, group, of)?
-                        }
+                    let kept = before.iter().position(|mesh| mesh.as_ref().is_some_and(|mesh| mesh.of == of));
+                    // One that has another place among them has its words elsewhere.
+                    is_other |= kept != Some(self.meshes.len());
+                    let mesh = match kept.and_then(|kept| before[kept].take()) {
+                        Some(mesh) => mesh,
+                        None => Mesh::new(gpu, group, of)?,
                     };
                     self.meshes.push(mesh);
                     self.meshes.len() - 1
@@ -155,7 +155,7 @@ impl RayMeshes {
             self.images.extend(images_of(group, self.standing.len() as u32));
             self.standing.push(Standing { mesh, offset: group.offset });
         }
-        if !is_other && self.meshes.len() == count_before && self.begins.len() == count_before {
+        if !is_other && self.meshes.len() == before.len() && self.begins.len() == before.len() {
             return Ok(false);
         }
         self.upload(gpu)

@@ -3,10 +3,12 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use veduta::{
+    geom::Shape,
     lens::{
-        Lens, LensBody, LensKind,
+        Deform, Lens, LensBody, LensKind,
         chosen::Choice,
-        kind::{FeatureLens, FisheyeLens, Magnifier, SamplingLens},
+        deform::Step,
+        kind::{Deformation, FeatureLens, FisheyeLens, Magnifier, SamplingLens},
         ray::{Bend, Feature, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate},
     },
     render::{
@@ -439,4 +441,39 @@ fn a_feature_is_magnified_where_rays_to_its_focal_point_meet_it() {
     }
     assert!(compared[0] > 3000 && compared[1] > 3000, "{compared:?}");
     println!("{compared:?} in the core, the band and beyond");
+}
+
+#[test]
+fn rays_are_followed_through_what_is_there_now() {
+    let mut kept = studio::synthetic(20);
+    let middle = kept.extent().center();
+    let camera = Camera::looking(middle + DVec3::new(30.0, -90.0, 70.0), middle, 0.9);
+    let raised = |factor: f64, x: f64| {
+        let by = Step::Scale { factors: DVec3::new(1.0, 1.0, factor) };
+        let deform = Deform { steps: vec![by], control: None, strength: 1.0 };
+        let shape =
+            Shape::Cylinder { center: middle + DVec3::new(x, 0.0, 0.0), radius: 40.0, height: 80.0, axis: DVec3::Z };
+        Lens {
+            body: LensBody::None,
+            shapes: vec![shape.into()],
+            ..Lens::plain("raised", Deformation { deform, content: None }, [0.5; 3])
+        }
+    };
+    let glass = || magnifier(magnify(2.0, 30.0, 50.0, 0.4));
+    let box_of = |studio: &mut Studio, lenses: Vec<Lens>| {
+        let picture = draw(studio, &studio::scene(camera, lenses), [120, 80], Backend::Specialised);
+        (
+            picture.rgba,
+            picture.object_id,
+            picture.depth.expect("depths").iter().map(|d| d.to_bits()).collect::<Vec<_>>(),
+        )
+    };
+    // One after the other, from what the last picture left, and each from nothing.
+    let scenes = [(1.5, 0.0), (2.5, 0.0), (2.5, 25.0), (1.5, 0.0)];
+    for (factor, x) in scenes {
+        let lenses = vec![raised(factor, x), glass()];
+        let fresh = box_of(&mut studio::synthetic(20), lenses.clone());
+        assert!(box_of(&mut kept, lenses) == fresh, "raised by {factor} at {x}");
+    }
+    assert!(box_of(&mut kept, vec![glass()]) == box_of(&mut studio::synthetic(20), vec![glass()]), "at rest again");
 }
