@@ -40,6 +40,16 @@ pub enum GpuError {
         /// What would help.
         advice: String,
     },
+    /// More of something than a picture takes.
+    #[error("{what}: {count}; one picture takes {most}")]
+    TooMany {
+        /// Of what.
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        most: usize,
+    },
     /// Something the driver reported while working.
     #[error("graphics adapter {adapter}: {message}")]
     Failed {

@@ -131,6 +131,19 @@ impl RayMeshes {
     pub fn fit(&mut self, gpu: &Gpu, plan: &FramePlan, cities: &Cities) -> Result<bool, GpuError> {
         let drawn = cities.drawn_sections(&plan.details, plan.cuts.picture.as_ref());
         let groups = groups_of(&drawn);
+        let sections = groups.iter().map(|group| group.parts.len()).max().unwrap_or(0);
+        for (what, count, most) in [
+            (
+                "cities, contents and things that move, seen through lenses that bend rays",
+                groups.len(),
+                MOST_RAY_CITIES,
+            ),
+            ("materials of a city that is seen through lenses that bend rays", sections, MOST_SECTIONS),
+        ] {
+            if count > most {
+                return Err(GpuError::TooMany { what, count, most });
+            }
+        }
         let mut before: Vec<Option<Mesh>> = std::mem::take(&mut self.meshes).into_iter().map(Some).collect();
         let mut is_other = false;
         self.standing.clear();
@@ -181,7 +194,7 @@ impl RayMeshes {
         let view = &plan.input.view;
         let view_from_world = view.basis.view_from_world();
         let mut all: Vec<layout::RayCity> = Vec::new();
-        for Standing { mesh, offset } in self.standing.iter().take(MOST_RAY_CITIES) {
+        for Standing { mesh, offset } in &self.standing {
             let (mesh, first) = (&self.meshes[*mesh], self.begins[*mesh]);
             let at = *offset as usize;
             let own: layout::City = match placed.get(at..at + size_of::<layout::City>()) {
@@ -264,7 +277,7 @@ fn images_of(group: &Group, city: u32) -> Vec<(u32, RayImages)> {
             RayImages { group: drawn.image?.by_level.clone(), emits: images.emission != NONE },
         ))
     };
-    (1..).zip(&group.parts).take(MOST_SECTIONS).filter_map(of).collect()
+    (1..).zip(&group.parts).filter_map(of).collect()
 }
 
 fn made_of(group: &Group) -> MadeOf {
@@ -383,7 +396,7 @@ impl Made<'_> {
             rest.push([a, b, c, 0]);
         }
         if let Some(images) = drawn.section.kind.images() {
-            kind |= PLACED | if images.facade { FACADE } else { number.min(MOST_SECTIONS as u32) << SECTION_SHIFT };
+            kind |= PLACED | if images.facade { FACADE } else { number << SECTION_SHIFT };
             let [a, b, c] =
                 indices.map(|i| source.texcoords.get(i as usize).copied().unwrap_or_default().map(f32::to_bits));
             rest.extend([[a[0], a[1], b[0], b[1]], [c[0], c[1], 0, 0]]);
