@@ -28,6 +28,52 @@ impl PictureTile {
     pub fn is_empty(&self) -> bool {
         self.size.contains(&0)
     }
+
+    /// That from one corner up to another; of no pixel where that is not beyond.
+    fn between(origin: [u32; 2], end: [u32; 2]) -> Self {
+        Self { origin, size: [0, 1].map(|i| end[i].saturating_sub(origin[i])) }
+    }
+
+    /// What two have in common.
+    pub fn common(self, other: Self) -> Self {
+        let origin = [0, 1].map(|i| self.origin[i].max(other.origin[i]));
+        Self::between(origin, [0, 1].map(|i| self.end(i).min(other.end(i))))
+    }
+
+    /// The rectangle around two.
+    pub fn around(self, other: Self) -> Self {
+        let origin = [0, 1].map(|i| self.origin[i].min(other.origin[i]));
+        Self::between(origin, [0, 1].map(|i| self.end(i).max(other.end(i))))
+    }
+
+    /// What of this is not in the other: above, left, right, below.
+    pub fn without(self, other: Self) -> impl Iterator<Item = Self> {
+        let hole = self.common(other);
+        let [left, top] = self.origin;
+        let [right, bottom] = [self.end(0), self.end(1)];
+        let [low, high] = [hole.origin, [hole.end(0), hole.end(1)]];
+        let parts = [
+            Self::between([left, top], [right, low[1]]),
+            Self::between([left, low[1]], [low[0], high[1]]),
+            Self::between([high[0], low[1]], [right, high[1]]),
+            Self::between([left, high[1]], [right, bottom]),
+        ];
+        let parts = if hole.is_empty() { [self; 4].into_iter().take(1) } else { parts.into_iter().take(4) };
+        parts.filter(|part| !part.is_empty())
+    }
+
+    /// The same pixels in parts of which no two have one in common.
+    pub fn apart(parts: impl IntoIterator<Item = Self>) -> Vec<Self> {
+        let mut apart: Vec<Self> = Vec::new();
+        for part in parts {
+            let mut rest = vec![part];
+            for taken in &apart {
+                rest = rest.into_iter().flat_map(|part| part.without(*taken)).collect();
+            }
+            apart.extend(rest.into_iter().filter(|part| !part.is_empty()));
+        }
+        apart
+    }
 }
 
 /// An eye position split so that subtracting it from whole metres is exact.
@@ -90,6 +136,8 @@ pub fn relative(world: DVec3, eye: DVec3) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
     use crate::{geom::Aabb, view::Camera};
 
@@ -115,6 +163,34 @@ mod tests {
             let found = pixel_by_uniform(&view, &uniform, world);
             let moved = expected - DVec2::new(origin[0].into(), origin[1].into()) - jitter;
             assert!((found - moved).length() < 1e-3, "{found} is not {moved}");
+        }
+    }
+
+    fn tile() -> impl Strategy<Value = PictureTile> {
+        let pair = || prop::array::uniform2(0..9u32);
+        (pair(), pair()).prop_map(|(origin, size)| PictureTile { origin, size })
+    }
+
+    proptest! {
+        #![proptest_config(crate::seeds::config())]
+
+        #[test]
+        fn parts_hold_each_pixel_once(parts in prop::collection::vec(tile(), 0..6)) {
+            let holds = |tile: &PictureTile, [x, y]: [u32; 2]| {
+                (tile.origin[0]..tile.end(0)).contains(&x) && (tile.origin[1]..tile.end(1)).contains(&y)
+            };
+            let apart = PictureTile::apart(parts.iter().copied());
+            for pixel in (0..18).flat_map(|x| (0..18).map(move |y| [x, y])) {
+                let count = apart.iter().filter(|tile| holds(tile, pixel)).count();
+                prop_assert_eq!(count, usize::from(parts.iter().any(|tile| holds(tile, pixel))));
+            }
+            for (a, b) in parts.iter().zip(parts.iter().skip(1)) {
+                let [common, around] = [a.common(*b), a.around(*b)];
+                for pixel in (0..18).flat_map(|x| (0..18).map(move |y| [x, y])) {
+                    prop_assert_eq!(holds(&common, pixel), holds(a, pixel) && holds(b, pixel));
+                    prop_assert!(holds(&around, pixel) || !(holds(a, pixel) || holds(b, pixel)));
+                }
+            }
         }
     }
 }

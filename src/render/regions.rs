@@ -113,8 +113,8 @@ impl RegionPasses {
                 pass.reaches.push(reaches_of(Some(lens), Class::from(class), input.volumes, &input.view));
                 let own = || seen.iter().filter(|v| v.lens == lens);
                 if class != ClassTest::Rest {
-                    let around = own().map(|v| v.bounds).reduce(around);
-                    pass.part = common(pass.part, around.unwrap_or(PictureTile { origin: [0; 2], size: [0; 2] }));
+                    let around = own().map(|v| v.bounds).reduce(PictureTile::around);
+                    pass.part = pass.part.common(around.unwrap_or(PictureTile { origin: [0; 2], size: [0; 2] }));
                 }
                 let is_endless = || own().any(|v| !input.volumes[v.index].region.is_bounded());
                 pass.has_background &= match class {
@@ -167,16 +167,4 @@ fn overlap_combinations(input: &FrameInput, classes: &[Vec<ClassTest>], lenses: 
     }
     found.sort_unstable();
     found
-}
-
-fn around(a: PictureTile, b: PictureTile) -> PictureTile {
-    let origin: [u32; 2] = std::array::from_fn(|i| a.origin[i].min(b.origin[i]));
-    let end = |i: usize| (a.origin[i] + a.size[i]).max(b.origin[i] + b.size[i]);
-    PictureTile { origin, size: std::array::from_fn(|i| end(i) - origin[i]) }
-}
-
-pub(super) fn common(a: PictureTile, b: PictureTile) -> PictureTile {
-    let origin: [u32; 2] = std::array::from_fn(|i| a.origin[i].max(b.origin[i]));
-    let end = |i: usize| (a.origin[i] + a.size[i]).min(b.origin[i] + b.size[i]);
-    PictureTile { origin, size: std::array::from_fn(|i| end(i).saturating_sub(origin[i])) }
 }

@@ -4,8 +4,9 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use veduta::{
+    geom::Shape,
     lens::{
-        Lens,
+        Lens, LensBody, Region,
         kind::{FeatureLens, SamplingLens},
         ray::{Bend, RayLens, RayOutline, Sampling, SamplingRate},
     },
@@ -102,6 +103,31 @@ fn what_is_magnified_and_made_small_again_is_where_it_was() {
     }
     println!("{compared} pixels, {wrong} wrong");
     assert_eq!(wrong, 0, "of {compared} pixels");
+}
+
+#[test]
+fn layers_are_there_once_where_lenses_overlap() {
+    let mut studio = studio::synthetic(40);
+    let middle = studio.extent().center();
+    let clear = studio::lens("clear", [Region::Shape(Shape::Sphere { center: middle, radius: 300.0 })], "x-ray");
+    let clear = Lens { body: LensBody::None, ..clear };
+    for (c, camera) in cameras(&studio).into_iter().enumerate() {
+        // Nested, and one beside the other: their rectangles have much in common.
+        let aside = |center: [f64; 2], m: f64| RayLens { center: center.into(), ..magnify(m, 80.0, 120.0, 0.5) };
+        let pairs = [
+            [aside([0.5, 0.5], 2.0), aside([0.5, 0.5], 1.0 / 1.5)],
+            [aside([0.4, 0.4], 1.0 + 1e-9), aside([0.6, 0.6], 1.0 + 1e-9)],
+        ];
+        let plain = draw(&mut studio, &studio::scene(camera, vec![clear.clone()]), Backend::Specialised);
+        for (p, pair) in pairs.into_iter().enumerate() {
+            let lenses = std::iter::once(clear.clone()).chain(pair.map(magnifier)).collect();
+            let found = draw(&mut studio, &studio::scene(camera, lenses), Backend::Specialised);
+            let differs = |(a, b): &(&[u8; 4], &[u8; 4])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 2);
+            let count = found.rgba.iter().zip(&plain.rgba).filter(differs).count();
+            // Rays beside edges may round to the other side.
+            assert!(count * 200 < found.rgba.len(), "eye {c}, pair {p}: {count} of {} pixels", found.rgba.len());
+        }
+    }
 }
 
 #[test]

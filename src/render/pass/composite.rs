@@ -9,7 +9,7 @@ use crate::{
         frame::Behind,
         pass::{
             context::FrameContext,
-            layering::{self, Layering, common},
+            layering::{self, Layering},
         },
         plan::FramePlan,
         resource::{
@@ -252,7 +252,7 @@ pub fn composite(
         pass.set_vertex_buffer(0, shared.mesh.buffer().slice(..));
         let mut counted = Counted::NONE;
         for (corners, tile) in &layering.pieces {
-            let tile = common(*tile, band.tile);
+            let tile = tile.common(band.tile);
             if corners.is_empty() || tile.is_empty() {
                 continue;
             }

@@ -59,8 +59,8 @@ impl<'a> Layering<'a> {
         let (parts, size) = (&plan.parts, plan.input.tile.size);
         let is_everywhere = plan.plans.context.transparency;
         let pieces = if is_everywhere || parts.inside.is_empty() { parts.all() } else { parts.inside.clone() };
-        let region = pieces.iter().map(|(_, tile)| *tile).filter(|tile| !tile.is_empty()).reduce(around);
-        let region = region.map(|region| common(region, PictureTile::whole(size))).filter(|r| !r.is_empty());
+        let region = pieces.iter().map(|(_, tile)| *tile).filter(|tile| !tile.is_empty()).reduce(PictureTile::around);
+        let region = region.map(|region| region.common(PictureTile::whole(size))).filter(|r| !r.is_empty());
         Some(Self { cut, pieces, part: u32::from(plan.has_lenses()), region, shown: shows_layers(plan) })
     }
 
@@ -111,20 +111,6 @@ pub fn has_colors(plan: &FramePlan) -> bool {
 pub fn asks_most(plan: &FramePlan) -> bool {
     let rules = plan.plans.layering.as_ref().map(|layering| layering.steps_of(EffectKind::Opacity, handlers()));
     rules.into_iter().flatten().any(|(_, rule)| rule.asks_most_layers)
-}
-
-/// The rectangle around two parts of a picture.
-fn around(a: PictureTile, b: PictureTile) -> PictureTile {
-    let low = [0, 1].map(|i| a.origin[i].min(b.origin[i]));
-    let high = [0, 1].map(|i| (a.origin[i] + a.size[i]).max(b.origin[i] + b.size[i]));
-    PictureTile { origin: low, size: [0, 1].map(|i| high[i] - low[i]) }
-}
-
-/// What two parts of a picture have in common.
-pub fn common(a: PictureTile, b: PictureTile) -> PictureTile {
-    let low = [0, 1].map(|i| a.origin[i].max(b.origin[i]));
-    let high = [0, 1].map(|i| (a.origin[i] + a.size[i]).min(b.origin[i] + b.size[i]));
-    PictureTile { origin: low, size: [0, 1].map(|i| high[i].saturating_sub(low[i])) }
 }
 
 /// Refuses a device that binds fewer buffers than lists of layers take.

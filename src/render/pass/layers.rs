@@ -220,15 +220,6 @@ fn sorting(words: u32, longest: u32) -> Vec<OrderKey> {
     widths.map(|width| OrderKey::Sort { words, width }).collect()
 }
 
-/// What two parts of a picture have in common.
-fn overlap(a: PictureTile, b: PictureTile) -> Option<PictureTile> {
-    let origin = [0, 1].map(|i| a.origin[i].max(b.origin[i]));
-    let end = [0, 1].map(|i| a.end(i).min(b.end(i)));
-    let size = [0, 1].map(|i| end[i].saturating_sub(origin[i]));
-    let common = PictureTile { origin, size };
-    (!common.is_empty()).then_some(common)
-}
-
 /// Halves of a band, the longer side halved; `None` of one pixel.
 fn halves(band: PictureTile) -> Option<[PictureTile; 2]> {
     let side = usize::from(band.size[1] >= band.size[0]);
@@ -382,8 +373,10 @@ impl Run<'_> {
                 |pass, offset| pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
             );
             for part in self.followed.iter().flat_map(|followed| &followed.parts) {
-                let Some(part) = overlap(*part, band.tile) else { continue };
-                counted += self.note_rays(pass, part);
+                let part = part.common(band.tile);
+                if !part.is_empty() {
+                    counted += self.note_rays(pass, part);
+                }
             }
             counted
         });

@@ -238,7 +238,8 @@ impl Pass for Rays {
         let input = plan.input;
         let parts = bent::parts(input.rays, &input.view, input.tile);
         let is_asked = !parts.is_empty() && input.technique == Technique::Accumulate;
-        is_asked.then(|| parts.iter().map(|part| part.rectangle()).collect())
+        // A pixel of several lenses is followed once.
+        is_asked.then(|| PictureTile::apart(parts.iter().map(|part| part.rectangle())))
     }
 
     fn add_needs(_: &Vec<PictureTile>, plan: &FramePlan, needs: &mut Needs) {

@@ -14,7 +14,7 @@ use crate::{
         picture_parts::Piece,
         plan::FramePlan,
         programs::Programs,
-        regions::{RegionPass, RegionPasses, common},
+        regions::{RegionPass, RegionPasses},
         resource::{
             bindings::{GroupLayout, NUMBERS, group},
             formats::DEPTH,
@@ -175,7 +175,7 @@ impl Pass for RegionShade {
             let mut counted = Counted::NONE;
             for region in &regions.passes {
                 let own: Vec<Piece> =
-                    pieces.iter().map(|(corners, tile)| (corners.clone(), common(*tile, region.part))).collect();
+                    pieces.iter().map(|(corners, tile)| (corners.clone(), tile.common(region.part))).collect();
                 for (key, first) in keys_of(plan, region).iter().zip([0, BACKGROUND]) {
                     // The triangles lie at depth 0; the depth test finds what lies at the region's.
                     let depth = (first + region.number + 1) as f32 / STEPS;
