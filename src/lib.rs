@@ -19,6 +19,7 @@
 pub mod app;
 pub mod city;
 pub mod cli;
+pub mod field;
 pub mod figure;
 pub mod geom;
 pub mod gpu;

@@ -12,6 +12,8 @@ mod derived;
 mod edges;
 #[path = "data/faces.rs"]
 mod faces;
+#[path = "data/fields.rs"]
+mod fields;
 #[path = "data/info.rs"]
 mod info;
 mod layouts;
@@ -74,6 +76,7 @@ fn main() {
         derived::trials(),
         edges::trials(),
         faces::trials(),
+        fields::trials(),
         info::trials(),
         meshes::trials(),
         occluders::trials(),

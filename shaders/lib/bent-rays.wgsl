@@ -277,3 +277,15 @@ fn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {
     asked_pixel = pixel;
     return bent_ray(across_of_pixel(pixel), select(FAR_AWAY, distance, distance > 0.0));
 }
+
+// From which distance on, beyond this one, it lies on another line.
+fn line_ends(distance: f32) -> f32 {
+    var end = FAR_AWAY;
+    for (var i = 0u; i < 2u * RAY_PLANES; i++) {
+        let event = ray_lenses.along[i];
+        let plane = select(event.lens - RAY_IMAGES, 0u, RAY_PLANES == 1u);
+        let is_bent = ray_lenses.lenses[RAY_IMAGES + plane].power != 0.0;
+        end = select(end, min(end, event.distance), is_bent && event.distance > distance);
+    }
+    return end;
+}

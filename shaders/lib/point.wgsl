@@ -31,6 +31,7 @@ struct Point {
     highlight: vec3f,           // light that does not come out of its colour, linear
     opacity: f32,               // of its material and texture, 0..1
     emission: vec3f,            // light of its own, linear
+    value: f32,                 // of a field: where it is on its ramp, 0..1; of what is none -1
 }
 
 const NO_SURFACE: u32 = 0xffffffffu;
@@ -121,6 +122,7 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u, share: vec3f) -> Po
     point.arriving = irradiance(point.normal, point.sun);
     point.shade = luminance(point.arriving);
     point.opacity = opacity_of(surface);
+    point.value = -1.0;
     if EMITS && !CLAY && (surface.flags & SURFACE_EMITS) != 0u {
         let own = surface_at(point.surface + 1u);
         point.emission = select(own.color, own.color * share, TEXELS_EMIT && (own.flags & LIGHT_OF_TEXELS) != 0u);
@@ -130,7 +132,7 @@ fn point_of(pixel: vec2i, ray: Ray, depth: f32, code: vec2u, share: vec3f) -> Po
 
 fn nowhere(pixel: vec2i) -> Point {
     return Point(pixel, vec3f(0.0), FAR_AWAY, 0.0, vec3f(0.0, 0.0, 1.0), NO_SURFACE, NO_OBJECT, PART_OTHER, 0u, 0u, false,
-                 vec3f(0.0), vec3f(0.0), 1.0, false, 1.0, vec3f(1.0), 1.0, vec3f(0.0), 1.0, vec3f(0.0));
+                 vec3f(0.0), vec3f(0.0), 1.0, false, 1.0, vec3f(1.0), 1.0, vec3f(0.0), 1.0, vec3f(0.0), -1.0);
 }
 
 // The surface shown beside a point, `offset` pixels away; at the picture's edge, what is at the edge.

@@ -178,6 +178,7 @@ fn composite(in: Corner) -> Composite {
     var count = 0u;
     var rounds = 0u;            // of walks
     var picked = vec4f(0.0, 0.0, 0.0, 1.0);
+    begin_fields(pixel, in.clip.xy, in.part.x);
     let least_seen = select(NOTHING_SEEN, 0.0, PICKS);
     var listed = head;          // of a list in order: the next node
     var is_left = head != 0u;
@@ -225,6 +226,10 @@ fn composite(in: Corner) -> Composite {
             //@pick
             let depth = bitcast<f32>(node.key.x);
             let normal = node.key.z;
+            var before = vec4f(color, through);
+            lay_fields(pixel, in.clip.xy, distance_of_depth(depth), in.part.x, &before);
+            color = before.rgb;
+            through = before.w;
             let code = node.key.y & NODE_CODE;
             see_pixel(in.clip.xy, distance_of_depth(depth));
             let ray = ray_of_pixel(in.clip.xy);
@@ -272,6 +277,11 @@ fn composite(in: Corner) -> Composite {
             break;
         }
     }
+    let opaque_depth = textureLoad(scene_depth, pixel, 0);
+    var before = vec4f(color, through);
+    lay_fields(pixel, in.clip.xy, select(FAR_AWAY, distance_of_depth(opaque_depth), opaque_depth > 0.0), in.part.x, &before);
+    color = before.rgb;
+    through = before.w;
     if TAIL {
         let sum = textureLoad(tail_sums, pixel, 0);
         let rest = textureLoad(tail_through, pixel, 0).x;

@@ -93,6 +93,7 @@ impl Document {
             time_steps,
             style,
             trajectories,
+            volumes,
             pois,
             lenses,
             overlays,
@@ -105,8 +106,8 @@ impl Document {
             == (&saved.city, &saved.sun, &saved.style, &saved.layout, &saved.figure, &saved.animation)
             && (time_s, moment, time_steps) == (&saved.time_s, &saved.moment, &saved.time_steps)
             && *camera_above_ground == saved.camera_above_ground;
-        let has_alike = (trajectories, pois, lenses, overlays)
-            == (&saved.trajectories, &saved.pois, &saved.lenses, &saved.overlays);
+        let has_alike = (trajectories, volumes, pois, lenses, overlays)
+            == (&saved.trajectories, &saved.volumes, &saved.pois, &saved.lenses, &saved.overlays);
         !(is_set_alike && has_alike)
     }
 

@@ -3,6 +3,7 @@
 mod compare;
 mod place;
 mod sights;
+mod volume;
 
 use std::{path::PathBuf, str::FromStr};
 
@@ -35,6 +36,7 @@ use crate::{
 pub use compare::{CompareFacts, ListedChange, StateFacts};
 pub use place::{Place, PlaceFacts};
 pub use sights::{LandmarkFacts, ViewFacts};
+pub use volume::{FieldFacts, VolumeFacts};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -54,6 +56,7 @@ Examples:
   veduta info --compare --key identificatie old.city.jsonl new.city.jsonl
                                                 the same where ids were given anew: matched by an attribute
   veduta info --json city.glb | jq .objects.total
+  veduta info wind.nrrd                         what is in a volume: arrays, ranges, its grid
   zcat city.json.gz | veduta info -             from a pipe
 
 The keys of --json are documented in docs/info.md, warning codes in docs/warnings.md.";
@@ -62,7 +65,7 @@ The keys of --json are documented in docs/info.md, warning codes in docs/warning
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// City files or folders of them, `-` for stdin; several make one city. Or a scene (.toml), whose city is meant, with its side tables
+    /// City files or folders of them, `-` for stdin; several make one city. Or a scene (.toml), whose city is meant, with its side tables. Or volumes
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Compare two states of a city, the earlier FILE first, the later second: what was added, removed and changed
@@ -159,6 +162,9 @@ fn spec(files: &[PathBuf], arguments: &Arguments, global: &GlobalArguments) -> O
 pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
     if arguments.compare {
         return compare::run(arguments, global);
+    }
+    if volume::are_volumes(&arguments.files) {
+        return volume::run(&arguments.files, arguments.json, global);
     }
     let spec = spec(&arguments.files, arguments, global)?;
     let (city, _) = load::load_city(&spec, Frames::default(), global)?;

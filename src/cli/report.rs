@@ -6,6 +6,7 @@ mod cells;
 mod compare;
 mod crs;
 mod sights;
+mod volumes;
 
 use std::fmt::Write;
 
@@ -23,6 +24,7 @@ use crate::{
 
 pub use cells::wrap;
 pub use compare::compare_text;
+pub use volumes::volumes_text;
 
 /// Columns at most.
 const WIDTH: usize = 100;

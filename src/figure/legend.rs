@@ -1,14 +1,18 @@
 //! What the legends of a scene say: one for each scale of colours that can be seen.
 
+use rustc_hash::FxHashMap;
+
 use crate::{
     city::{CityModel, shown::ShownObjects},
     figure::ticks::number_text,
     lens::{
         EffectUse,
         color::Srgb,
+        ramp::{RampColors, RampKind},
         source::OF_SURFACES,
-        thematic::{LegendKind, Rule, ThematicScale},
+        thematic::{LegendEntry, LegendKind, Rule, ThematicScale},
     },
+    render::fields::ShownVolume,
     scene::Scene,
     shader::{PerObject, effect::find},
 };
@@ -78,6 +82,49 @@ pub fn legends(
         }
     }
     legends
+}
+
+/// Places at which the colours of a transfer function are looked at.
+const TRANSFER_COLORS: usize = 129;
+/// What an opacity of 1 is in columns.
+const OPAQUE: f64 = 1000.0;
+
+/// The legends of the volumes of a scene; columns are as high as values are opaque.
+pub fn volume_legends(scene: &Scene, shown: &[ShownVolume]) -> Vec<Legend> {
+    let legend = |own: &ShownVolume| {
+        let volume = &scene.volumes[own.index];
+        let transfer = &volume.transfer;
+        let [min, max] = own.ends;
+        let places = |count: usize| (0..count).map(move |i| min + (max - min) * i as f64 / (count - 1) as f64);
+        let rule = match volume.labels {
+            true => Rule::Categories { colors: FxHashMap::default() },
+            false => {
+                let colors = places(TRANSFER_COLORS).map(|value| transfer.look(value, own.ends).0).collect();
+                Rule::Ramp { colors: RampColors::own(RampKind::Sequential, colors), min, max }
+            }
+        };
+        let entry = |(i, label): (usize, &f64)| LegendEntry {
+            color: transfer.label_color(i),
+            label: transfer.names.get(i).cloned().unwrap_or_else(|| number_text(*label, 1.0)),
+            count: 0,
+            kind: LegendKind::Value,
+        };
+        let opacity = |value: f64| (OPAQUE * f64::from(transfer.look(value, own.ends).1)).round() as u64;
+        let is_ramp = !volume.labels;
+        let scale = ThematicScale {
+            attribute: own.title.clone(),
+            measure: None,
+            rule,
+            legend: if is_ramp { Vec::new() } else { transfer.values.iter().enumerate().map(entry).collect() },
+            no_data: [0.0; 3],
+            threshold: None,
+            relief: 0.0,
+            counts: false,
+            histogram: if is_ramp { places(TRANSFER_COLORS).map(opacity).collect() } else { Vec::new() },
+        };
+        Legend { title: own.title.clone(), unit: own.unit.clone(), lenses: Vec::new(), scale }
+    };
+    shown.iter().map(legend).collect()
 }
 
 /// Adds the legends of another picture: those of one scale and title are shared, and belong to the lenses of both.

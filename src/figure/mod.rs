@@ -179,7 +179,8 @@ pub fn furniture_of(studio: &Studio, scene: &Scene, size: [u32; 2]) -> Result<La
     let legends = match figure.legend.is_some() {
         true => {
             let (seen, beside) = (studio.lenses_in_view(scene, size)?, studio.shown_beside(scene, size)?);
-            legend::legends(scene, studio.file(), &seen, &studio.model, &beside)
+            let of_city = legend::legends(scene, studio.file(), &seen, &studio.model, &beside);
+            [legend::volume_legends(scene, &studio.volumes(scene)?), of_city].concat()
         }
         false => Vec::new(),
     };

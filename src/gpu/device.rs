@@ -12,6 +12,9 @@ use wgpu::util::DeviceExt;
 
 use super::snapping;
 
+/// What a 3D texture takes, bytes, at most.
+const MOST_3D_BYTES: u64 = 4 << 30;
+
 /// What can go wrong between here and the GPU.
 #[derive(Debug, thiserror::Error)]
 pub enum GpuError {
@@ -349,6 +352,58 @@ impl Gpu {
             usage,
             view_formats: &[],
         })
+    }
+
+    /// A 3D texture to read from.
+    ///
+    /// # Errors
+    /// It has more texels along an edge than the adapter takes, or more in all than a picture may: `what` needs it, `advice` would help.
+    pub fn texture_3d(
+        &self,
+        what: &str,
+        [width, height, depth]: [u32; 3],
+        format: wgpu::TextureFormat,
+        advice: &str,
+    ) -> Result<wgpu::Texture, GpuError> {
+        let most = self.device.limits().max_texture_dimension_3d;
+        let texel = u64::from(format.block_copy_size(None).unwrap_or(4));
+        let bytes = [height, depth].iter().try_fold(u64::from(width) * texel, |all, n| all.checked_mul((*n).into()));
+        let too_large = |allowed: String| GpuError::TooLarge {
+            what: what.to_owned(),
+            needed: format!("{width} x {height} x {depth} texels"),
+            allowed,
+            adapter: self.name(),
+            advice: advice.to_owned(),
+        };
+        if [width, height, depth].iter().any(|n| *n > most) {
+            return Err(too_large(format!("{most} along an edge")));
+        }
+        let bytes = bytes.filter(|bytes| *bytes <= MOST_3D_BYTES).ok_or_else(|| too_large(mebibytes(MOST_3D_BYTES)))?;
+        self.count_allocation(bytes);
+        Ok(self.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(what),
+            size: wgpu::Extent3d { width, height, depth_or_array_layers: depth },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        }))
+    }
+
+    /// Fills a box of a 3D texture, from a slice on; `texels` are tightly packed.
+    pub fn write_texture_box(&self, texture: &wgpu::Texture, first_slice: u32, size: [u32; 3], texels: &[u8]) {
+        self.count_upload(texels.len() as u64);
+        let [width, height, depth_or_array_layers] = size;
+        let row = width * texture.format().block_copy_size(None).unwrap_or(4);
+        let origin = wgpu::Origin3d { z: first_slice, ..wgpu::Origin3d::ZERO };
+        self.queue.write_texture(
+            wgpu::TexelCopyTextureInfo { origin, ..texture.as_image_copy() },
+            texels,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: Some(height) },
+            wgpu::Extent3d { width, height, depth_or_array_layers },
+        );
     }
 
     /// Fills one mip level of a texture's first layer; `texels` are tightly packed.

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use crate::{
     lens::ray_path::RayPaths,
     render::{
-        eye::PictureTile, furniture::Furniture, moved::Moved, operations::Operations, solids::SolidTable,
-        volume::LensVolume,
+        eye::PictureTile, fields::PlacedFields, furniture::Furniture, moved::Moved, operations::Operations,
+        solids::SolidTable, volume::LensVolume,
     },
     scene::{Background, BaseStyle, StyleLook, Sun, Technique, Transparency},
     view::View,
@@ -43,6 +43,8 @@ pub struct FrameInput<'a> {
     pub lens_count: u32,
     /// How lenses bend rays.
     pub rays: &'a RayPaths,
+    /// Fields that stand in the city.
+    pub fields: &'a PlacedFields,
     /// The solids among them.
     pub solids: &'a Arc<SolidTable>,
     /// What the context and the lenses do.

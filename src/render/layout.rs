@@ -391,6 +391,68 @@ pub struct RayLenses {
     pub knots: [[f32; 4]; RAY_KNOTS],
 }
 
+/// `lib/fields.wgsl`: what a ray makes of a field.
+pub const FIELD_DIRECT: u32 = 0;
+/// `lib/fields.wgsl`.
+pub const FIELD_ABSORBS: u32 = 1;
+/// `lib/fields.wgsl`.
+pub const FIELD_SURFACE: u32 = 2;
+/// `lib/fields.wgsl`.
+pub const FIELD_MAXIMUM: u32 = 3;
+/// `lib/fields.wgsl`.
+pub const FIELD_MINIMUM: u32 = 4;
+/// `lib/fields.wgsl`.
+pub const FIELD_MEAN: u32 = 5;
+/// `lib/fields.wgsl`: its light acts on it.
+pub const FIELD_LIT: u32 = 1;
+/// `lib/fields.wgsl`.
+pub const FIELD_SHADOWED: u32 = 2;
+/// `lib/fields.wgsl`.
+pub const FIELD_LABELS: u32 = 4;
+/// `lib/fields.wgsl`.
+pub const FIELD_STEEP: u32 = 8;
+/// `lib/fields.wgsl`: its surface is a plane across its first axis; the next two bits say across its second and its third.
+pub const FIELD_SLICE: u32 = 16;
+
+/// `lib/fields.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Field {
+    pub to_x: [f32; 4],
+    pub to_y: [f32; 4],
+    pub to_z: [f32; 4],
+    pub low: [f32; 3],
+    pub mode: u32,
+    pub high: [f32; 3],
+    pub flags: u32,
+    pub last: [f32; 3],
+    pub first_slice: u32,
+    pub scale: f32,
+    pub shift: f32,
+    pub level: f32,
+    pub steepest: f32,
+    pub thickness: f32,
+    pub first_brick: u32,
+    pub ramp: u32,
+    pub reserved: u32,
+}
+
+/// Fields of a picture, and the entries of their ramps.
+const FIELDS: usize = crate::scene::volume::MOST_VOLUMES;
+const FIELD_ENTRIES: usize = FIELDS * crate::scene::volume::RAMP_ENTRIES;
+
+/// `lib/fields.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct FieldTable {
+    pub count: u32,
+    pub is_jittered: u32,
+    pub step: f32,
+    pub reserved: f32,
+    pub each: [Field; FIELDS],
+    pub ramps: [[f32; 4]; FIELD_ENTRIES],
+}
+
 /// `pass/rays.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -621,6 +683,7 @@ mod tests {
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
         let rays = Module::Rays(None, crate::shader::Bends { images: 1, planes: 1 });
+        let fields = Module::Composite(Program::Specialised(Plan { fields: true, ..Plan::default() }));
         let checks = [
             (
                 &Module::Geometry(None),
@@ -737,6 +800,29 @@ mod tests {
                     world_z
                 }),
             ),
+            (
+                &fields,
+                host!(Field {
+                    to_x,
+                    to_y,
+                    to_z,
+                    low,
+                    mode,
+                    high,
+                    flags,
+                    last,
+                    first_slice,
+                    scale,
+                    shift,
+                    level,
+                    steepest,
+                    thickness,
+                    first_brick,
+                    ramp,
+                    reserved
+                }),
+            ),
+            (&fields, host!(FieldTable { count, is_jittered, step, reserved, each, ramps })),
             (&cut, host!(City { linear, from_whole, number, from_fraction, first_surface, to, scale })),
             (
                 &shade,

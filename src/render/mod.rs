@@ -31,6 +31,8 @@ mod enclosed;
 pub mod epochs;
 pub mod eye;
 mod facades;
+pub mod fields;
+mod fields_on_gpu;
 mod flat;
 pub mod footprints;
 pub mod frame;

@@ -189,6 +189,8 @@ pub struct Operations {
     pub suns: Vec<Option<Moment>>,
     /// How many lenses bend the rays of some pixels.
     pub bends: Bends,
+    /// Whether fields stand in the city.
+    pub fields: bool,
     /// Which objects of the scene's own city that is.
     pub presence: Arc<[Presence]>,
     /// What lenses do to the moment, bottom lens first.
@@ -315,6 +317,11 @@ impl Operations {
         (self.bends, self.uber.bends) = (by, by);
     }
 
+    /// Has fields stand in the city.
+    pub fn add_fields(&mut self) {
+        (self.fields, self.uber.fields) = (true, true);
+    }
+
     /// The same for a frame under the sun of one of its moments.
     pub fn under_sun(&self, number: usize) -> Self {
         let mut own = self.clone();
@@ -396,9 +403,21 @@ impl Operations {
     /// What shading has to do outside all lenses.
     pub fn context_plan(&self, haze: bool) -> Plan {
         let steps = self.steps(&[], |_| None);
-        let Self { timed, partly, moves, varies, bends, .. } = *self;
+        let Self { timed, partly, moves, varies, bends, fields, .. } = *self;
         let lit = !self.suns.is_empty();
-        Plan { lines: draws_lines(&steps), steps, haze, timed, partly, moves, varies, bends, lit, ..Plan::default() }
+        Plan {
+            lines: draws_lines(&steps),
+            steps,
+            haze,
+            timed,
+            partly,
+            moves,
+            varies,
+            bends,
+            fields,
+            lit,
+            ..Plan::default()
+        }
     }
 
     /// What shading has to do where lenses may be seen; `seen` holds each seen volume's lens, ascending, and how it is
@@ -436,9 +455,9 @@ impl Operations {
         };
         let epochs = self.epochs.iter().filter_map(epoch).collect();
         let lines = draws_lines(&steps);
-        let Self { timed, partly, moves, varies, bends, .. } = *self;
+        let Self { timed, partly, moves, varies, bends, fields, .. } = *self;
         let lit = !self.suns.is_empty();
-        let of_time = Plan { timed, partly, moves, varies, bends, lit, epochs, ..Plan::default() };
+        let of_time = Plan { timed, partly, moves, varies, bends, fields, lit, epochs, ..Plan::default() };
         Plan { lenses, steps, haze, masks, lines, contents, ..of_time }
     }
 

@@ -34,6 +34,7 @@ use crate::{
         diagnostics,
         epochs::KnownLifetimes,
         eye::PictureTile,
+        fields::ShownVolume,
         footprints::OwnFootprints,
         frame::{Backend, FrameInput, ShaderPart},
         furniture::{self, Furniture},
@@ -609,6 +610,14 @@ impl Studio {
         Ok(self.renderer.shader(&input, &drawn.scene.lenses, part))
     }
 
+    /// What the volumes of a scene show.
+    ///
+    /// # Errors
+    /// A file that is none, or has not what is asked for.
+    pub fn volumes(&self, scene: &Scene) -> Result<Vec<ShownVolume>, RenderError> {
+        self.known().fields.shown(&scene.volumes).map_err(RenderError::Scene)
+    }
+
     /// The surroundings that scenes are resolved in.
     fn surroundings(&self) -> Surroundings<'_> {
         Surroundings {
@@ -873,6 +882,7 @@ fn input<'a>(scene: &Scene, request: &Request, resolved: &'a Resolved, tile: Pic
         haze: HAZE,
         volumes: &resolved.volumes,
         rays: &resolved.rays,
+        fields: &resolved.fields,
         solids: &resolved.solids,
         lens_count: scene.lenses.len() as u32,
         operations: &resolved.operations,

@@ -20,6 +20,7 @@ use crate::{
         deformations::{self, KnownDeformations, SceneDeformations},
         displayed::{LastDisplayed, Stands},
         epochs::{Epochs, KnownLifetimes, LensPlaces, MetLenses},
+        fields::{KnownFields, PlacedFields},
         footprints::{self, OwnFootprints},
         hiding::{convex, rounded},
         lens_volumes::{LensVolumes, Tools, volumes_of},
@@ -72,6 +73,8 @@ pub(super) struct Known {
     pub deformations: KnownDeformations,
     /// Outlines of lenses that bend rays, by their images.
     pub ray_masks: RayMasks,
+    /// Fields loaded so far.
+    pub fields: KnownFields,
     /// The city where they last showed it.
     pub displayed: LastDisplayed,
 }
@@ -106,6 +109,8 @@ pub(super) struct Resolved {
     pub deformations: SceneDeformations,
     /// How lenses bend rays.
     pub rays: RayPaths,
+    /// Fields that stand in the city.
+    pub fields: PlacedFields,
     /// Suns of several moments, the scene's own first, each with what the operations are in its frame; empty: there is one.
     pub suns: Vec<(Sun, Operations)>,
 }
@@ -157,11 +162,14 @@ impl Surroundings<'_> {
         add_members(&mut operations, &mut volumes, &self.models(&contents));
         check_counts(&operations, &volumes)?;
         let (own, moved) = (self.reach(), &deformations.moved);
+        let fields = known.fields.of_scene(&scene.volumes).map_err(ResolveError::Scene)?;
         let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved)).union(moving.bounds);
+        let all = all.union(fields.bounds());
         let mut view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
         let rays = self.rays(scene, &view, &mut known.ray_masks)?;
-        refuse_with_rays(scene, &rays)?;
+        refuse_with(scene, !rays.is_empty(), "lenses that bend rays")?;
+        refuse_with(scene, !fields.is_empty(), "volumes")?;
         view.looks_around = rays.looks_around();
         if view.looks_around && view.is_orthographic() {
             // Its depths are distances from the eye.
@@ -169,7 +177,10 @@ impl Surroundings<'_> {
             view.far_m = view.far_m.max(1.001 * farthest + 1.0);
         }
         operations.bend_rays(Bends { images: rays.images.len() as u32, planes: rays.planes.len() as u32 });
-        Ok(Resolved { view, volumes, solids, operations, contents, deformations, rays, suns: Vec::new() })
+        if !fields.is_empty() {
+            operations.add_fields();
+        }
+        Ok(Resolved { view, volumes, solids, operations, contents, deformations, rays, fields, suns: Vec::new() })
     }
 
     /// The lenses that bend rays.
@@ -491,17 +502,17 @@ fn add_members(operations: &mut Operations, volumes: &mut [LensVolume], models: 
     }
 }
 
-/// Refuses ways of drawing that know no bent rays.
-fn refuse_with_rays(scene: &Scene, rays: &RayPaths) -> Result<(), ResolveError> {
+/// Refuses ways of drawing that do not know what a scene has.
+fn refuse_with(scene: &Scene, has_them: bool, what: &str) -> Result<(), ResolveError> {
     let refused = |key: &str, right: &str| {
-        let message = format!("[style] {key}: does not go with lenses that bend rays; \"{right}\" would be right");
+        let message = format!("[style] {key}: does not go with {what}; \"{right}\" would be right");
         Err(ResolveError::Scene(message))
     };
-    match rays.is_empty() {
-        true => Ok(()),
-        false if scene.style.technique != Technique::Accumulate => refused("technique", "accumulate"),
-        false if scene.style.transparency != Transparency::Exact => refused("transparency", "exact"),
+    match has_them {
         false => Ok(()),
+        true if scene.style.technique != Technique::Accumulate => refused("technique", "accumulate"),
+        true if scene.style.transparency != Transparency::Exact => refused("transparency", "exact"),
+        true => Ok(()),
     }
 }
 

@@ -8,6 +8,7 @@ use crate::{
         bent,
         cities::Cities,
         eye::PictureTile,
+        fields_on_gpu::FieldsOnGpu,
         invokers::Invokers,
         layout,
         light::{self, Surround},
@@ -51,6 +52,8 @@ pub(super) struct Shared {
     /// The lenses that bend rays, and what some of them have in place of an outline.
     pub ray_lenses: Synced,
     pub ray_fields: RayFields,
+    /// What stands in the city of fields.
+    pub fields: FieldsOnGpu,
     /// The scene's own city and contents, for the main view.
     pub cities: Synced,
     /// How many samples there are.
@@ -108,6 +111,7 @@ impl Shared {
             object_values: storage("object values")?,
             ray_lenses: uniform("lenses that bend rays")?,
             ray_fields: RayFields::new(gpu),
+            fields: FieldsOnGpu::new(gpu)?,
             cities: uniform("cities")?,
             samples: uniform("resolve")?,
             mesh: Synced::new(gpu, "parts of the picture", U::VERTEX)?,
@@ -168,6 +172,7 @@ impl Shared {
         stale |= self.object_values.sync(gpu, &input.operations.object_values)?;
         stale |= self.ray_lenses.sync(gpu, &[bent::uniform(input.rays)])?;
         stale |= self.ray_fields.fit(gpu, &bent::fields(input.rays));
+        stale |= self.fields.fit(gpu, input.fields, &input.view, input.is_summed())?;
         stale |= self.samples.sync(gpu, &[input.samples as f32])?;
         self.mesh.sync(gpu, &plan.parts.mesh.corners)?;
         self.stamp += u64::from(stale);

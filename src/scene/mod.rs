@@ -15,6 +15,7 @@ pub mod sized;
 pub mod technique;
 pub mod trajectory;
 pub mod transparency;
+pub mod volume;
 
 pub use crate::lens::best_view::{Background, BaseStyle, StyleLook};
 pub use animation::Animation;
@@ -30,3 +31,4 @@ pub use overlay::{Layout, Overlay};
 pub use technique::Technique;
 pub use trajectory::{Moving, Trajectory};
 pub use transparency::Transparency;
+pub use volume::Volume;

@@ -23,6 +23,7 @@ use crate::{
         technique::Technique,
         trajectory::Trajectory,
         transparency::Transparency,
+        volume::Volume,
     },
     time::Moment,
     view::Camera,
@@ -49,6 +50,8 @@ pub struct Scene {
     pub style: Style,
     /// The ways of what moves.
     pub trajectories: Vec<Trajectory>,
+    /// Fields that stand in the city.
+    pub volumes: Vec<Volume>,
     /// Points of interest.
     pub pois: Vec<Poi>,
     /// Lenses, bottom to top.

@@ -20,6 +20,15 @@ pub(super) fn shading(program: &Program, handlers: &[EffectDefinition], names: &
     Carried { functions: own.functions + &of_scene, ..own }
 }
 
+/// `kept_of_field`: how much lenses leave of a field at a place, where the scene has some.
+pub(super) fn kept(program: &Program, handlers: &[EffectDefinition]) -> String {
+    match program {
+        _ if !program.has().fields => String::new(),
+        Program::Specialised(plan) => specialised::kept(plan, handlers),
+        Program::Uber(uber) => uber::kept(uber, handlers),
+    }
+}
+
 /// `opacity_at`, for translucent layers.
 pub(super) fn opacity(program: &Program, handlers: &[EffectDefinition]) -> String {
     match program {

@@ -4,11 +4,11 @@ use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     library::{
         BLEND, BORDER, BORDER_WIDTH, CITIES, CLASS, CLEAR, COLOR, COMBINED, COMBINED_DISTANCE, COMBINED_SECTION,
-        COMBINED_SPRITE, DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FILTERED, FIXED, FORM, FRAGMENT,
-        File, GLASS, INSTANTS, LENS, LENS_SPRITE, LIFETIME, LIGHT, LINE, LINES, MATERIAL, MEMBER_OUTLINE, MEMBERS,
-        MOMENT, MOVING, OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE, PACKED, POINT, REGION, SECTIONS, SHELL_SIDES,
-        SHELL_SPRITE, SIGHT, SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE, SURFACE, TEXEL, TRANSPARENCY, VARYING, VIEW,
-        VIEW_UNIFORM,
+        COMBINED_SPRITE, DEPTH_CODE, DITHER, EDGE, FADING_MEMBERS, FADING_OUTLINE, FIELDS, FILTERED, FIXED, FORM,
+        FRAGMENT, FRAGMENT_AT, File, GLASS, INSTANTS, LENS, LENS_SPRITE, LIFETIME, LIGHT, LINE, LINES, MATERIAL,
+        MEMBER_OUTLINE, MEMBERS, MOMENT, MOVING, NO_FIELDS, OBJECTS, ONE_CITY, OUTLINE, OWN_SPRITE, PACKED, POINT,
+        REGION, SECTIONS, SHELL_SIDES, SHELL_SPRITE, SIGHT, SOLID_DISTANCE, SOLID_SPRITE, STORED_SPRITE, SURFACE,
+        TEXEL, TRANSPARENCY, VARYING, VIEW, VIEW_UNIFORM,
     },
     plan::program::Program,
 };
@@ -17,14 +17,15 @@ use crate::shader::{
 pub(super) fn of_city(program: &Program, behind: &[File]) -> Vec<File> {
     let lenses = of_lenses(program);
     let objects = of_objects(program);
-    [&[VIEW, VIEW_UNIFORM, SURFACE, SIGHT], &lenses[..], &objects, &[FRAGMENT, vertices(program)], behind].concat()
+    [&[VIEW, VIEW_UNIFORM, SURFACE, SIGHT], &lenses[..], &objects, &[FRAGMENT, FRAGMENT_AT, vertices(program)], behind]
+        .concat()
 }
 
 /// The same of translucent fragments, which keep colours.
 pub(super) fn of_translucent_city(program: &Program, behind: &[File]) -> Vec<File> {
     let lenses = of_lenses(program);
     let first = [VIEW, VIEW_UNIFORM, SURFACE, PACKED, TEXEL, SIGHT];
-    [&first, &lenses[..], &of_objects(program), &[FRAGMENT, vertices(program)], behind].concat()
+    [&first, &lenses[..], &of_objects(program), &[FRAGMENT, FRAGMENT_AT, vertices(program)], behind].concat()
 }
 
 /// The pass that draws lines, and what it calls.
@@ -39,6 +40,14 @@ pub(super) fn of_lines(program: &Program) -> Vec<File> {
     files.extend(of_lenses(program));
     files.push(LINES);
     files
+}
+
+/// What compositing calls of fields.
+pub(super) fn of_fields(program: &Program) -> Vec<File> {
+    if !program.has().fields {
+        return vec![NO_FIELDS];
+    }
+    vec![FRAGMENT, FIELDS]
 }
 
 /// The libraries that shading calls.

@@ -8,7 +8,10 @@ use crate::shader::{
     files,
     geometry::{self, Drawn, NOTHING_CUT},
     hiding::{self, Eye},
-    library::{CHANCE, DITHER, FACADE, FORWARD, FRAGMENT, FRAGMENT_NODES, GEOMETRY, SHADE, TAIL, TEXEL, TRANSLUCENT},
+    library::{
+        CHANCE, DITHER, FACADE, FORWARD, FRAGMENT, FRAGMENT_AT, FRAGMENT_NODES, GEOMETRY, SHADE, TAIL, TEXEL,
+        TRANSLUCENT,
+    },
     names,
     plan::{Bends, program::Program},
     rays,
@@ -88,7 +91,7 @@ impl Forward {
         let mut files = files::of_lenses(&self.hidden);
         files.retain(|file| !shading.contains(file));
         files.extend(files::of_objects(&self.hidden).into_iter().filter(|file| !shading.contains(file)));
-        files.extend([FRAGMENT, files::vertices(&self.hidden), FACADE, GEOMETRY, TRANSLUCENT]);
+        files.extend([FRAGMENT, FRAGMENT_AT, files::vertices(&self.hidden), FACADE, GEOMETRY, TRANSLUCENT]);
         if !shading.contains(&DITHER) {
             files = files::with_threshold(files);
         }

@@ -108,7 +108,8 @@ fn head(has_contents: bool, timed: bool, partly: bool, is_layers: bool) -> Strin
     format!("fn {name}(fragment: Fragment) -> bool {{\n{presence}") + &asked.collect::<String>()
 }
 
-fn call(handler: &EffectDefinition, first: &str) -> String {
+/// The call of a hiding effect of `fragment`, whose parameters begin at a slot.
+pub(super) fn call(handler: &EffectDefinition, first: &str) -> String {
     let own = if handler.slots() == 0 { String::new() } else { format!(", {}({first})", handler.own("parameters")) };
     format!("{}(fragment{own})", handler.wgsl_name())
 }

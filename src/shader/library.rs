@@ -122,6 +122,9 @@ files! {
     ONE_CITY = "lib/one-city.wgsl";
     CITIES = "lib/cities.wgsl";
     FRAGMENT = "lib/fragment.wgsl";
+    FRAGMENT_AT = "lib/fragment-at.wgsl";
+    FIELDS = "lib/fields.wgsl";
+    NO_FIELDS = "lib/no-fields.wgsl";
     CUT = "lib/cut.wgsl";
     OUTLINE = "lib/outline.wgsl";
     SILHOUETTE = "lib/silhouette.wgsl";

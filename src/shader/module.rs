@@ -135,7 +135,8 @@ impl Module {
             Self::Composite(program) => {
                 let own = backend::shading(program, handlers, lenses, &Shading::of_layers(adapter.carried));
                 let text = text.fill("carried", own.members).fill("handlers", own.functions);
-                sorting::filled(text).fill("opacity", backend::opacity(program, handlers))
+                sorting::filled(text)
+                    .fill("opacity", backend::opacity(program, handlers) + &backend::kept(program, handlers))
             }
             Self::Layers(program, is_early) => {
                 let text = geometry::filled(text, Drawn::Surfaces, &(hidden(program, Eye::Layers) + NOTHING_CUT));
@@ -259,7 +260,8 @@ impl Module {
             }
             Self::Shade(program) => return [files::of_shading(program, handlers), vec![SHADE]].concat(),
             Self::Composite(program) => {
-                return [files::of_shading(program, handlers), vec![SHADE, TEXEL, FRAGMENT_NODES, COMPOSITE]].concat();
+                let own = vec![SHADE, TEXEL, FRAGMENT_NODES, COMPOSITE];
+                return [files::of_shading(program, handlers), files::of_fields(program), own].concat();
             }
             Self::Lines(program) => return files::of_lines(program),
             Self::Regions(plan) => {

@@ -36,6 +36,11 @@ pub(super) fn opacity(plan: &Plan, handlers: &[EffectDefinition]) -> String {
     Writer { plan, handlers, names: &[] }.opacity()
 }
 
+/// `kept_of_field`, for the fields of `pass/composite.wgsl`.
+pub(super) fn kept(plan: &Plan, handlers: &[EffectDefinition]) -> String {
+    Writer { plan, handlers, names: &[] }.kept()
+}
+
 /// A filter's kernel, for `pass/filter.wgsl`.
 pub(super) fn kernel(filter: &EffectDefinition) -> String {
     // Its radius, if nothing else, is a parameter.

@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     epochs::{self, OF_LAYER},
+    hiding,
     invoke::{each, fades, invoke, shade, share_argument, styled, used},
     lens_test,
     library::{
@@ -16,7 +17,7 @@ use crate::shader::{
     plan::{lens::BodyKind, program::Program, uber::Uber},
     shading::Shading,
     table::{self, MOST_SLOTS},
-    writer::opacity_end,
+    writer::{KEPT_END, kept_head, opacity_end},
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`.
@@ -94,6 +95,41 @@ pub(super) fn opacity(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let share = share_argument(uber);
     text.push_str(&each(uber, "OPACITIES", &format!("opacity = invoke_opacity(opacity, point, by{share});\n")));
     text + &end
+}
+
+/// `kept_of_field`, for the fields of `pass/composite.wgsl`.
+pub(super) fn kept(uber: &Uber, handlers: &[EffectDefinition]) -> String {
+    let has = |kind| used(uber, handlers).any(|(_, h)| h.kind == kind);
+    let hides = has(EffectKind::Hide);
+    let head = kept_head(hides || has(EffectKind::Opacity));
+    if !hides {
+        return head + KEPT_END;
+    }
+    let mut text = "fn hides_field(fragment: Fragment, by: Invoker) -> bool {\n    switch by.handler {\n".to_owned();
+    for (number, handler) in used(uber, handlers).filter(|(_, h)| h.kind == EffectKind::Hide) {
+        let call = hiding::call(handler, "by.parameters");
+        let _ = writeln!(text, "        case {number}u: {{ return {call}; }}");
+    }
+    text.push_str("        default: { return false; }\n    }\n}\n\n");
+    let share = if fades(uber) { "share_at(by, classes)" } else { "select(0.0, 1.0, runs(by, classes))" };
+    text + &head + &kept_by_invokers(share) + KEPT_END
+}
+
+/// `by.kind` is 2 for opacity rules.
+fn kept_by_invokers(share: &str) -> String {
+    format!(
+        "    let range = table.ranges.xy;
+    for (var i = range.x; i < range.y; i++) {{
+        let by = invoker(i);
+        if by.kind != 2u && hides_field(fragment, by) {{
+            kept *= 1.0 - {share};
+        }}
+        if i + 1u == range.y {{
+            break;
+        }}
+    }}
+"
+    )
 }
 
 /// Whether something is there at a layer that cannot be had by halves, where lenses fade.

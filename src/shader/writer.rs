@@ -243,6 +243,30 @@ impl Writer<'_> {
         text
     }
 
+    /// How much lenses leave of a field at a place: what hides takes it away, and opacity rules thin it out as they do surfaces.
+    pub(super) fn kept(&self) -> String {
+        let mut text = kept_head(self.has(EffectKind::Hide) || self.has(EffectKind::Opacity));
+        for (step, handler) in self.plan.steps_of(EffectKind::Hide, self.handlers) {
+            let own = match handler.slots() {
+                0 => String::new(),
+                _ => format!(", {}({}u)", handler.own("parameters"), step.parameters),
+            };
+            let share = match (step.scope, self.share(step)) {
+                (Scope::Everywhere, _) => "1.0".to_owned(),
+                (_, Some(share)) => share,
+                (Scope::Lens(lens, class), None) => {
+                    format!("select(0.0, 1.0, {}(classes.lens_{lens}))", class.function())
+                }
+            };
+            let _ = writeln!(
+                text,
+                "    if {}(fragment{own}) {{\n        kept *= 1.0 - {share};\n    }}",
+                handler.wgsl_name()
+            );
+        }
+        text + KEPT_END
+    }
+
     /// Scene styles and post styles, in lens order: what replaces the colour leaves nothing of the styles below.
     pub(super) fn styled(&self, suffix: &str) -> String {
         let is_style = |(_, h): &(&Step, &EffectDefinition)| h.kind.is_style();
@@ -255,6 +279,16 @@ impl Writer<'_> {
         }
     }
 }
+
+/// The beginning of `kept_of_field`. `is_cut`: whether anything may take some of a field away.
+pub(super) fn kept_head(is_cut: bool) -> String {
+    format!(
+        "const LENSES_CUT_FIELDS: bool = {is_cut};\n\nfn kept_of_field(fragment: Fragment, point: Point, classes: Classes) -> f32 {{\n    var kept = 1.0;\n"
+    )
+}
+
+/// Its end.
+pub(super) const KEPT_END: &str = "    return kept * opacity_at(point, classes);\n}\n";
 
 /// Says at which moment what is shaded is seen.
 pub(super) fn moment_here(partly: bool) -> &'static str {

@@ -83,17 +83,12 @@ fn seeds() -> Vec<u64> {
     })
 }
 
-#[test]
-fn both_back_ends_draw_random_scenes_the_same() {
-    let wanted = Wanted { lenses: [2, 4], deformations: true, history: None };
-    let cities = ["builtin:square", "builtin:town"];
-    let mut studios = cities.map(|city| of_scene(&parse_city(city)));
+/// Draws the scenes of these seeds by both; `of`: the studio and the text of one. `share`: how many of ten have to be drawn.
+#[allow(clippy::print_stdout, reason = "what is drawn is told beside the results")]
+fn draw_by_both(all: &[u64], share: usize, of: impl Fn(u64) -> (usize, String), studios: &mut [Studio]) {
     let (mut count, mut between, mut wrong) = (0, 0, Vec::new());
-    let all = seeds();
-    let total = all.len();
     for seed in all {
-        let which = (seed / FAMILY % 2) as usize;
-        let text = scene(seed, cities[which], wanted);
+        let (which, text) = of(*seed);
         let started = Instant::now();
         println!("seed {seed}:\n{text}");
         match same_by_both(&mut studios[which], &text) {
@@ -108,9 +103,31 @@ fn both_back_ends_draw_random_scenes_the_same() {
         }
         println!("seed {seed}: {:.1} s", started.elapsed().as_secs_f64());
     }
+    let total = all.len();
     println!("{count} of {total} scenes drawn, {between} of them with colours between two steps");
     assert!(wrong.is_empty(), "{} of {total} scenes:\n{}", wrong.len(), wrong.join("\n"));
-    assert!(count * 10 > total * 8, "{count} of {total} scenes can be drawn");
+    assert!(count * 10 > total * share, "{count} of {total} scenes can be drawn");
+}
+
+/// Seeds of families of their own: each thing that is drawn over random scenes has others. Programs of both back ends take long to compile: few.
+fn seeds_beside(family: u64, most: usize) -> Vec<u64> {
+    let mut all: Vec<u64> = seeds().into_iter().map(|seed| seed + family * FAMILY).collect();
+    if !is_thorough() {
+        all.truncate(most);
+    }
+    all
+}
+
+#[test]
+fn both_back_ends_draw_random_scenes_the_same() {
+    let wanted = Wanted { lenses: [2, 4], deformations: true, history: None };
+    let cities = ["builtin:square", "builtin:town"];
+    let mut studios = cities.map(|city| of_scene(&parse_city(city)));
+    let of = |seed: u64| {
+        let which = (seed / FAMILY % 2) as usize;
+        (which, scene(seed, cities[which], wanted))
+    };
+    draw_by_both(&seeds(), 8, of, &mut studios);
 }
 
 /// Lenses that bend rays, over a random scene.
@@ -129,28 +146,39 @@ fn bends(seed: u64) -> &'static str {
 fn both_back_ends_bend_rays_through_random_scenes_the_same() {
     let wanted = Wanted { lenses: [1, 3], deformations: true, history: None };
     let city = "builtin:square";
-    let mut studio = of_scene(&parse_city(city));
-    let (mut count, mut wrong) = (0, Vec::new());
-    // Families of their own.
-    let mut all: Vec<u64> = seeds().into_iter().map(|seed| seed + 2000 * FAMILY).collect();
-    if !is_thorough() {
-        // Programs of both back ends take long to compile.
-        all.truncate(2);
-    }
-    for seed in &all {
-        let bends = bends(if is_thorough() { *seed } else { seed / FAMILY });
-        let text = format!("{}\n[[lens]]\nname = \"b0\"\n{bends}\n", scene(*seed, city, wanted));
-        match same_by_both(&mut studio, &text) {
-            Ok(drawn) => count += usize::from(drawn.is_some()),
-            Err(difference) => {
-                println!("seed {seed}: {difference}");
-                wrong.push(format!("seed {seed}: {difference}"));
-            }
-        }
-    }
-    println!("{count} of {} scenes drawn", all.len());
-    assert!(wrong.is_empty(), "{} of {} scenes:\n{}", wrong.len(), all.len(), wrong.join("\n"));
-    assert!(count * 2 > all.len(), "{count} of {} scenes can be drawn", all.len());
+    let of = |seed: u64| {
+        let bends = bends(if is_thorough() { seed } else { seed / FAMILY });
+        (0, format!("{}\n[[lens]]\nname = \"b0\"\n{bends}\n", scene(seed, city, wanted)))
+    };
+    draw_by_both(&seeds_beside(2000, 2), 5, of, &mut [of_scene(&parse_city(city))]);
+}
+
+/// What volumes of a random scene are like, beside their file.
+fn volumes_of(seed: u64) -> &'static str {
+    const ALL: [&str; 4] = [
+        "light = \"shadowed\"",
+        "mode = \"maximum\"\n[[volume]]\nname = \"second\"\nmode = \"isosurface\"\nlight = \"lit\"\ntransfer = { opacity = [0.6, 0.6] }",
+        "mode = \"gradient\"\n[[volume]]\nname = \"second\"\nmode = \"slice\"\ntransfer = { ramp = \"vik\", opacity = [0.5, 0.9] }",
+        "mode = \"x-ray\"\n[[volume]]\nname = \"second\"\nmode = \"average\"\nstep = 0.5",
+    ];
+    ALL[(seed % 4) as usize]
+}
+
+#[test]
+fn both_back_ends_see_through_volumes_the_same() {
+    let size = [13, 11, 9];
+    let file = volumes::written("seen-by-both", size, |[x, y, z]| ((x * 7 + y * 5 + z * 3) % 17) as f32);
+    let wanted = Wanted { lenses: [1, 3], deformations: true, history: None };
+    let city = "builtin:square";
+    let of = |seed: u64| {
+        let own = format!("file = {file:?}\norigin = [-60, -50, -4]\nspacing = [9, 8, 7]\n");
+        let of_seed = volumes_of(if is_thorough() { seed } else { seed / FAMILY });
+        let all: String = of_seed.split("[[volume]]\n").map(|volume| format!("[[volume]]\n{own}{volume}\n")).collect();
+        let bends =
+            if seed % 3 == 1 { "[[lens]]\nname = \"b0\"\nkind = \"magnifier\"\nray = { radius = 0.3 }\n" } else { "" };
+        (0, format!("{}\n{all}{bends}", scene(seed, city, wanted)))
+    };
+    draw_by_both(&seeds_beside(3000, 3), 5, of, &mut [of_scene(&parse_city(city))]);
 }
 
 /// Keys of `[city]` by which things of the square move and change over centuries; the tables stay as long as the tests run.
@@ -193,23 +221,10 @@ fn both_back_ends_draw_random_moments_the_same() {
     let history = history();
     let wanted = Wanted { lenses: [2, 4], deformations: true, history: Some(history) };
     let city = format!("veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n{history}\n");
-    let mut studio = of_scene(&parse(&city, "city.toml", &outside()).unwrap_or_else(|error| panic!("{error}")));
-    let (mut count, mut wrong) = (0, Vec::new());
+    let studio = of_scene(&parse(&city, "city.toml", &outside()).unwrap_or_else(|error| panic!("{error}")));
     // Every family of an ordinary run is another than that of scenes without time.
-    let all: Vec<u64> = seeds().into_iter().map(|seed| seed + 1000 * FAMILY).collect();
-    for seed in &all {
-        let text = scene(*seed, "builtin:square", wanted);
-        match same_by_both(&mut studio, &text) {
-            Ok(drawn) => count += usize::from(drawn.is_some()),
-            Err(difference) => {
-                println!("seed {seed}: {difference}");
-                wrong.push(format!("seed {seed}: {difference}"));
-            }
-        }
-    }
-    println!("{count} of {} scenes drawn", all.len());
-    assert!(wrong.is_empty(), "{} of {} scenes:\n{}", wrong.len(), all.len(), wrong.join("\n"));
-    assert!(count * 10 > all.len() * 7, "{count} of {} scenes can be drawn", all.len());
+    let all = seeds_beside(1000, usize::MAX);
+    draw_by_both(&all, 7, |seed| (0, scene(seed, "builtin:square", wanted)), &mut [studio]);
 }
 
 fn outside() -> Options {

@@ -205,6 +205,15 @@ pub fn first(faces: &[Face], pieces: &[Piece], near: f64) -> Option<(u32, f64)> 
     None
 }
 
+/// All that a path meets, the parameters in no order.
+pub fn met(faces: &[Face], pieces: &[Piece], near: f64) -> Vec<f64> {
+    let of_piece = |([begin, end], origin, direction): &Piece| {
+        let met = faces.iter().filter_map(|face| meets(*origin, *direction, face.corners));
+        met.filter(|t| *t >= begin.max(near) && t <= end).collect::<Vec<f64>>()
+    };
+    pieces.iter().flat_map(of_piece).collect()
+}
+
 pub fn lens(kind: impl Into<LensKind>) -> Lens {
     Lens { body: LensBody::None, ..Lens::plain("bent", kind, [0.5; 3]) }
 }

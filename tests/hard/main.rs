@@ -42,6 +42,7 @@ mod case_21_zero_size_window;
 mod case_22_points_of_interest;
 mod case_23_jitter;
 mod case_24_combinations;
+mod case_25_volumes;
 mod case_27_bent_rays;
 mod deformed;
 mod large_cities;

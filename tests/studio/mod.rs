@@ -3,6 +3,7 @@
 
 pub mod by_rays;
 pub mod random_scene;
+pub mod volumes;
 
 use std::{
     collections::BTreeMap,

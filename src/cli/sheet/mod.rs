@@ -213,10 +213,12 @@ pub fn draw(task: &Task, kept: &mut Option<(CitySpec, Studio)>, global: &GlobalA
         let new = if was_open { render::told(problems, &format!("cell {}: scene", cell.name))? } else { problems };
         reported.extend(new);
         if sheet.legend {
-            let shown = studio
-                .on_ground(&cell.scene)
-                .and_then(|scene| Ok((studio.lenses_in_view(&scene, size)?, studio.shown_beside(&scene, size)?)));
-            let (seen, beside) = shown.map_err(|error| failed(format!("cell {}: {error}", cell.name)))?;
+            let shown = studio.on_ground(&cell.scene).and_then(|scene| {
+                let volumes = studio.volumes(&scene)?;
+                Ok((studio.lenses_in_view(&scene, size)?, studio.shown_beside(&scene, size)?, volumes))
+            });
+            let (seen, beside, volumes) = shown.map_err(|error| failed(format!("cell {}: {error}", cell.name)))?;
+            legend::join(&mut legends, legend::volume_legends(&cell.scene, &volumes));
             legend::join(&mut legends, legend::legends(&cell.scene, studio.file(), &seen, &studio.model, &beside));
         }
     }

@@ -26,6 +26,7 @@ use crate::{
         style::{STYLE, TRANSPARENCY},
         test_keys::TESTS,
         trajectory::{TIME, TRAJECTORY},
+        volume::{SLICE, TRANSFER, VOLUME},
     },
     lens::{effect::LOD, measures::MEASURES, ramp::RAMPS, rendering::ROWS},
     shader::{
@@ -49,6 +50,9 @@ pub const TABLES: &[(&str, &Table)] = &[
     ("[style]", &STYLE),
     ("transparency of [style]", &TRANSPARENCY),
     ("[[trajectory]]", &TRAJECTORY),
+    ("[[volume]]", &VOLUME),
+    ("transfer of a volume", &TRANSFER),
+    ("slice of a volume", &SLICE),
     ("[[poi]]", &POI),
     ("[[lens]]", &LENS),
     ("attached_to of a lens", &ATTACHED_TO),

@@ -42,6 +42,7 @@ mod style;
 pub mod test_keys;
 mod text;
 mod trajectory;
+pub mod volume;
 
 use std::{
     io::Read,

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 
-use super::{tests::read_text, *};
+use super::{keys::RAMPS, tests::read_text, *};
 use crate::{
     city::{
         change::{Became, Between, CityChange},
@@ -11,12 +11,14 @@ use crate::{
         lifetime::{Dating, Undated},
         side_table::Join,
     },
+    field::Component,
     geom::{Shape, combination::Operation, shape::FlatFigure},
     lens::{
         BestView, Border, BorderUnit, Class, Content, Copied, Deform, Discrete, EffectUse, Handled, Lens, LensBody,
         LensKind, LensSprite, Occluders, Only, OwnEye, Parameter, Placement, Region, Rendering,
         best_view::{Depiction, LocalView, Look, MapMode},
         chosen::Choice,
+        color::parse_hex,
         deform::{BORDER, ControlProfile, Step},
         kind::{Deformation, FeatureLens, FisheyeLens, Magnifier, Occlusion, SamplingLens, TimeLens},
         ray::{Bend, Feature, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate},
@@ -31,6 +33,7 @@ use crate::{
         overlay::{Along, BuiltInFrame, CallOut, ContextLine, Frame, LineEnd, LineKind, Outside, Sizes, Stand},
         trajectory::{Pace as WayPace, Trajectory},
         transparency::{MOST_PEELED, SLOTS},
+        volume::{Slice, Transfer, Volume, VolumeLight, VolumeMode},
     },
     shader::{
         Blend, Clip, EffectKind,
@@ -465,7 +468,7 @@ fn operators() -> impl Strategy<Value = Vec<Handled>> {
 
 prop_compose! {
     fn lenses()(occluded in prop::option::weighted(0.3, occluded()),
-        shapes in prop::collection::vec(regions(), 1..3), used in prop::collection::vec(effects(), 0..2),
+        shapes in prop::collection::vec(regions(), 1..3), mut used in prop::collection::vec(effects(), 0..2),
         enabled in any::<bool>(), color in prop::array::uniform3(0.0..=1.0f32), body in 0..LensBody::WORDS.len(),
         ends in ends(), placement in placements(), content in prop::option::of(contents()), is_content in any::<bool>(),
         section in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), keeps_shadows in any::<bool>(), at_rest in any::<bool>(),
@@ -488,6 +491,10 @@ prop_compose! {
         }
         if let Some(bends) = bends.filter(|_| matches!(kind, LensKind::Color(_)) && sprite.is_none() && content.is_none()) {
             (kind, shapes, placement, at_rest) = (bends, vec![], Placement::World, false);
+            // In an outline of its own it has no effects.
+            if kind.ray().is_some_and(|ray| ray.mask.is_some() || matches!(ray.bend, Bend::Feature(_))) {
+                used.clear();
+            }
         }
         if !time.is_empty() && matches!(kind, LensKind::Color(_)) {
             kind = TimeLens::default().into();
@@ -692,12 +699,62 @@ prop_compose! {
 }
 
 prop_compose! {
+    fn volumes()(file in "[a-zäß]{1,9}[.]nrrd", is_plume in any::<bool>(), words in prop::array::uniform3(0..8usize), flags in prop::array::uniform4(any::<bool>()),
+        values in prop::collection::vec(-1e6..1e6f64, 0..5), numbers in prop::array::uniform4(0.02..15.0f64), origin in prop::option::of(point()), text in prop::option::of("[a-z\"ü]{1,6}"),
+        colors in prop::collection::vec("#[0-9a-f]{6}", 2..6), opacity in prop::collection::vec(0.0..=1.0f32, 2..6), time_step in 0..9u32) -> Volume {
+        let [is_visible, y_up, labels, is_ranged] = flags;
+        let mut values = values;
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        if labels {
+            values = vec![3.0, 7.0, 12.0];
+        }
+        let count = values.len();
+        let mut colors: Vec<[f32; 3]> = colors.iter().filter_map(|hex| parse_hex(hex)).collect();
+        let mut opacity = opacity;
+        if count > 0 {
+            colors.resize(count, [0.0; 3]);
+            opacity.resize(count, 0.5);
+        }
+        let mode = VolumeMode::WORDS[words[0]].1;
+        Volume {
+            name: String::new(),
+            visible: is_visible,
+            file: if is_plume { crate::field::PLUME.into() } else { file.into() },
+            field: text.clone(),
+            label: text.clone(),
+            unit: text,
+            component: [Component::Magnitude, Component::Index(0), Component::Index(1), Component::Index(2)][words[1] % 4],
+            time_step,
+            labels,
+            origin,
+            spacing: is_ranged.then(|| DVec3::from_slice(&numbers)),
+            y_up,
+            transfer: Transfer {
+                ramp: RAMPS[words[2]].to_owned(),
+                names: if labels { ["a", "b", "c"].map(str::to_owned).to_vec() } else { Vec::new() },
+                range: is_ranged.then_some([-1.5, numbers[0]]),
+                colors: if y_up { colors } else { Vec::new() },
+                opacity,
+                values,
+            },
+            mode,
+            level: (mode == VolumeMode::Isosurface).then_some(numbers[1]),
+            slice: if mode == VolumeMode::Slice { Slice { axis: words[1] as u32 % 3, at: numbers[2] / 16.0 } } else { Slice::default() },
+            light: VolumeLight::WORDS[words[2] % 3].1,
+            thickness: is_visible.then_some(numbers[3]),
+            step: numbers[2],
+        }
+    }
+}
+
+prop_compose! {
     fn scenes()(eye in point(), target in point(), ortho in any::<bool>(), tenths in 1..1790u32, with_camera in any::<bool>(),
         near_m in 1e-3..10.0f64, sun in (-3600..3600i32, -900..900i32, any::<bool>()), clay in any::<bool>(),
         background in prop::option::of(prop::array::uniform3(0.0..=1.0f32)), poi in prop::collection::vec((".{1,6}", point(), any::<bool>()), 0..3),
         mut lenses in prop::collection::vec(lenses(), 0..4), size in prop::array::uniform2(1..=16_384u32), samples in 1..=1024u32,
         shown in prop::collection::vec((shown(), prop::option::of(overlays())), 0..3), layout in prop::option::of(layouts()), figure in figures(), lod in prop::option::of(0..99u8), technique in prop::sample::select(&Technique::ALL[..]), transparency in transparencies(), chord_px in prop_oneof![Just(0.25), 0.02..=100.0f64], ground in any::<bool>(), files in prop::collection::vec("[ -~äß]{1,9}", 0..3),
-        (animation, ways, time_s) in (prop::option::of(animations()), prop::collection::vec(ways(), 0..3), -1e6..1e6f64),
+        (animation, ways, time_s, volumes) in (prop::option::of(animations()), prop::collection::vec(ways(), 0..3), -1e6..1e6f64, prop::collection::vec(volumes(), 0..3)),
         (moment, from, undated, steps) in (prop::option::of(Moment::FIRST.micros()..=Moment::LAST.micros()), prop::option::of("[a-z]{1,5}"), any::<bool>(), operators())) -> Scene {
         let projection_of = |tenths: u32, ortho: bool| match ortho {
             true => Projection::Orthographic { height_m: f64::from(tenths) },
@@ -740,6 +797,7 @@ prop_compose! {
         let poi = pois;
         let mut scene = Scene {
             trajectories: ways.into_iter().enumerate().map(|(i, way)| Trajectory { name: format!("w{i}"), ..way }).collect(),
+            volumes: volumes.into_iter().enumerate().map(|(i, volume)| Volume { name: format!("v{i}"), ..volume }).collect(),
             time_s,
             moment: moment.and_then(Moment::from_micros),
             time_steps: steps,

@@ -19,6 +19,7 @@ use crate::{
         row,
         style::{STYLE, STYLE_ROWS},
         trajectory::{self, TIME, TIME_ROWS, TRAJECTORY},
+        volume::{self, VOLUME},
     },
     scene::{self, CitySpec, Figure, Layout, Scene, SceneProblem, Style, Sun},
 };
@@ -142,6 +143,21 @@ const SECTIONS: &[Section] = &[
             |scene| scene.pois.len(),
             |scene, i, options| poi::written(&scene.pois[i], options),
             |reader, fields, i, scene| put(&mut scene.pois, i, poi::read(reader, fields, i)),
+        ),
+    },
+    Section {
+        key: key(
+            "volume",
+            Kind::Tables(&VOLUME),
+            "none",
+            "",
+            "Fields that stand in the city.",
+            "[{ file = \"builtin:plume\", origin = [0, 0, 0], spacing = [10, 10, 5] }]",
+        ),
+        holds: Holds::Tables(
+            |scene| scene.volumes.len(),
+            |scene, i, options| volume::written(i, &scene.volumes[i], options),
+            |reader, fields, i, scene| put(&mut scene.volumes, i, volume::read(reader, fields, i)),
         ),
     },
     Section {
@@ -302,6 +318,7 @@ impl Section {
         match self.key.name {
             "trajectory" => scene.trajectories.iter().position(|way| way.name == name),
             "poi" => scene.pois.iter().position(|poi| poi.name == name),
+            "volume" => scene.volumes.iter().position(|volume| volume.name == name),
             "lens" => scene.lenses.iter().position(|lens| lens.name == name),
             _ => None,
         }
@@ -342,6 +359,7 @@ impl Section {
 pub fn check<'n>(reader: &mut Reader, scene: &Scene, lists: &dyn Fn(&str) -> &'n [Node]) {
     unique(reader, "lens", lists("lens"), scene.lenses.iter().map(|lens| lens.name.as_str()));
     unique(reader, "poi", lists("poi"), scene.pois.iter().map(|poi| poi.name.as_str()));
+    unique(reader, "volume", lists("volume"), scene.volumes.iter().map(|volume| volume.name.as_str()));
     unique(reader, "trajectory", lists("trajectory"), scene.trajectories.iter().map(|way| way.name.as_str()));
     // Of a way that is wrong it is told already.
     let is_whole = lists("trajectory").len() <= scene.trajectories.len();

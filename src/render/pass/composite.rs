@@ -6,6 +6,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     render::{
         eye::PictureTile,
+        fields::FieldKinds,
         frame::Behind,
         pass::{
             context::FrameContext,
@@ -13,7 +14,7 @@ use crate::{
         },
         plan::FramePlan,
         resource::{
-            bindings::{FLOATS, GroupLayout, STORAGE, WRITTEN, all_of, group, whole},
+            bindings::{FLOATS, GroupLayout, STORAGE, UNIFORM, VOXEL_NUMBERS, VOXELS, WRITTEN, all_of, group, whole},
             formats::{OWN_DEPTH, SMOOTH_CODES, TRANSPARENCY},
             key::{Draw, Parts, PipelineKey, Stage, flag, words},
             layouts::{LENSES, SHADE, VIEW},
@@ -33,6 +34,20 @@ static LAYER_LISTS: GroupLayout = GroupLayout {
         (1, S::FRAGMENT, STORAGE),
         (2, S::FRAGMENT, FLOATS),
         (3, S::FRAGMENT, FLOATS),
+    ],
+};
+
+/// The same, and what stands in the city of fields.
+static LAYERS_AND_FIELDS: GroupLayout = GroupLayout {
+    label: "lists of layers, and fields",
+    entries: &[
+        (0, S::FRAGMENT, WRITTEN),
+        (1, S::FRAGMENT, STORAGE),
+        (2, S::FRAGMENT, FLOATS),
+        (3, S::FRAGMENT, FLOATS),
+        (4, S::FRAGMENT, UNIFORM),
+        (5, S::FRAGMENT, VOXELS),
+        (6, S::FRAGMENT, VOXEL_NUMBERS),
     ],
 };
 
@@ -77,9 +92,16 @@ pub struct CompositeKey {
     pub tail: bool,
     /// One layer is told in place of all.
     pub picks: bool,
+    /// What stands in the city of fields.
+    pub fields: FieldKinds,
 }
 
 impl CompositeKey {
+    /// What it binds of its own.
+    fn lists(&self) -> &'static GroupLayout {
+        if self.program.has().fields { &LAYERS_AND_FIELDS } else { &LAYER_LISTS }
+    }
+
     /// That of a frame, of lists that are in no order and have no record.
     pub fn new(plan: &FramePlan, program: &Program) -> Self {
         Self {
@@ -99,6 +121,7 @@ impl CompositeKey {
             record: 0,
             tail: false,
             picks: false,
+            fields: plan.input.fields.kinds(),
         }
     }
 }
@@ -107,6 +130,7 @@ impl PipelineKey for CompositeKey {
     fn name(&self) -> String {
         let list = [
             (self.picks, "of one layer"),
+            (self.program.has().fields, "and fields"),
             (self.record == 1, "of slots"),
             (self.record > 1, "of peeling"),
             (self.tail, "and a tail"),
@@ -129,29 +153,55 @@ impl PipelineKey for CompositeKey {
         let targets = [TRANSPARENCY, SMOOTH_CODES, OWN_DEPTH].map(|format| Some(format.into()));
         Parts {
             module: Module::Composite(self.program.clone()),
-            groups: vec![Some(&VIEW), Some(&SHADE), Some(&LENSES), Some(&LAYER_LISTS)],
-            constants: vec![
-                ("SORTED", flag(self.sorted)),
-                ("RECORD", f64::from(self.record)),
-                ("TAIL", flag(self.tail)),
-                ("PICKS", flag(self.picks)),
-                ("TEXTURED", flag(self.textured)),
-                ("BLENDED", flag(self.blended)),
-                ("EMITS", flag(self.emits)),
-                ("TEXELS_EMIT", flag(self.texels_emit)),
-                ("CLAY", flag(self.clay)),
-                ("SHADOWS", flag(self.shadows)),
-                ("SKY_SHADOWS", flag(self.sky)),
-                ("GROUND_FADES", flag(self.fades)),
-                ("BACKGROUND", f64::from(self.behind as u32)),
-                ("SMOOTH", flag(self.smooth)),
-            ],
+            groups: vec![Some(&VIEW), Some(&SHADE), Some(&LENSES), Some(self.lists())],
+            constants: [&self.constants()[..], &self.of_fields()].concat(),
             stage: Stage::Draw(Draw {
                 buffers: vec![vertices::picture_corners()],
                 targets: targets[..if self.shown { 3 } else { 1 }].to_vec(),
                 ..Draw::new("vertex", Some(if self.shown { "transparency_and_shown" } else { "transparency" }))
             }),
         }
+    }
+}
+
+impl CompositeKey {
+    /// Of layers.
+    fn constants(&self) -> Vec<(&'static str, f64)> {
+        vec![
+            ("SORTED", flag(self.sorted)),
+            ("RECORD", f64::from(self.record)),
+            ("TAIL", flag(self.tail)),
+            ("PICKS", flag(self.picks)),
+            ("TEXTURED", flag(self.textured)),
+            ("BLENDED", flag(self.blended)),
+            ("EMITS", flag(self.emits)),
+            ("TEXELS_EMIT", flag(self.texels_emit)),
+            ("CLAY", flag(self.clay)),
+            ("SHADOWS", flag(self.shadows)),
+            ("SKY_SHADOWS", flag(self.sky)),
+            ("GROUND_FADES", flag(self.fades)),
+            ("BACKGROUND", f64::from(self.behind as u32)),
+            ("SMOOTH", flag(self.smooth)),
+        ]
+    }
+
+    /// Of fields, where there are some.
+    fn of_fields(&self) -> Vec<(&'static str, f64)> {
+        if !self.program.has().fields {
+            return Vec::new();
+        }
+        let FieldKinds { walked, surfaces, projected, lit, shadowed, labels, numbers, steep } = self.fields;
+        let all = [
+            ("FIELDS_WALKED", walked),
+            ("FIELDS_SURFACES", surfaces),
+            ("FIELDS_PROJECTED", projected),
+            ("FIELDS_LIT", lit),
+            ("FIELDS_SHADOWED", shadowed),
+            ("FIELDS_LABELS", labels),
+            ("FIELDS_NUMBERS", numbers),
+            ("FIELDS_STEEP", steep),
+        ];
+        all.map(|(name, is_on)| (name, flag(is_on))).to_vec()
     }
 }
 
@@ -231,14 +281,18 @@ pub fn composite(
         (1, lists.nodes(band.words)),
         (2, all_of(&targets.tail_sums)),
         (3, all_of(&targets.tail_through)),
+        (4, whole(shared.fields.table.buffer())),
+        (5, wgpu::BindingResource::TextureView(&shared.fields.values_view)),
+        (6, wgpu::BindingResource::TextureView(&shared.fields.bricks_view)),
     ];
-    let own = group(gpu, "lists of layers", &frame.pipelines.layout(&LAYER_LISTS), &entries);
+    let layout = key.lists();
+    let own = group(gpu, layout.label, &frame.pipelines.layout(layout), &entries[..layout.entries.len()]);
     let colors =
         [&targets.transparency, &targets.shown_code, &targets.shown_depth].map(|target| Some(kept(&target.view)));
     let pass = DrawnPass {
         name: "composite",
         view: "main",
-        lenses: &layering.cut.hiding.lenses,
+        lenses: layering.lenses(),
         shaded: Shaded::Counted,
         colors: &colors[..if layering.shown { 3 } else { 1 }],
         depth: None,

@@ -24,7 +24,8 @@ const BUFFERS_OF_RAYS: u32 = 9;
 /// What is translucent in a frame, and where.
 #[derive(Clone, Debug)]
 pub struct Layering<'a> {
-    pub cut: &'a Cut,
+    /// `None`: of the city nothing is, there are fields alone.
+    pub cut: Option<&'a Cut>,
     /// Parts of the picture where something may be translucent, as triangles of the mesh.
     pub pieces: Vec<Piece>,
     /// Of the picture: the context's (0), or the lenses' (1).
@@ -55,13 +56,28 @@ impl<'a> LayerPrograms<'a> {
 impl<'a> Layering<'a> {
     /// What a frame's plan has of them.
     pub fn of(plan: &'a FramePlan<'a>) -> Option<Self> {
-        let (_, cut) = plan.plans.layering.as_ref().zip(plan.cuts.picture.as_ref())?;
-        let (parts, size) = (&plan.parts, plan.input.tile.size);
+        plan.plans.layering.as_ref()?;
+        let cut = plan.cuts.picture.as_ref();
+        let input = plan.input;
+        let (parts, size) = (&plan.parts, input.tile.size);
         let is_everywhere = plan.plans.context.transparency;
         let pieces = if is_everywhere || parts.inside.is_empty() { parts.all() } else { parts.inside.clone() };
         let region = pieces.iter().map(|(_, tile)| *tile).filter(|tile| !tile.is_empty()).reduce(PictureTile::around);
         let region = region.map(|region| region.common(PictureTile::whole(size))).filter(|r| !r.is_empty());
+        // Where nothing of the city is seen through, that is where fields are.
+        let region = match cut {
+            Some(_) => region,
+            None => {
+                region.zip(input.fields.part(&input.view, input.tile, !input.rays.is_empty())).map(|(a, b)| a.common(b))
+            }
+        };
+        let region = region.filter(|region| !region.is_empty());
         Some(Self { cut, pieces, part: u32::from(plan.has_lenses()), region, shown: shows_layers(plan) })
+    }
+
+    /// The lenses that decide what is seen through.
+    pub fn lenses(&self) -> &[u32] {
+        self.cut.map_or(&[], |cut| &cut.hiding.lenses)
     }
 
     /// Adds the targets of layers.

@@ -14,7 +14,7 @@ use crate::{
         pass::{
             composite::{Band, CompositeKey, HEADER, LayerLists, POOLS, composite},
             context::{Board, FrameContext, Keys, Line, Pass},
-            layering::{self, LayerPrograms, Layering},
+            layering::{self, Layering},
             rays::{Followed, RAYS},
             section_kind::{GeometryKind, Normals},
             translucent::draw_translucent,
@@ -273,7 +273,8 @@ pub struct ExactLayers {
 struct Run<'a> {
     frame: &'a FrameContext<'a>,
     layering: &'a Layering<'a>,
-    noting: &'a Program,
+    /// `None`: nothing of the city is translucent.
+    noting: Option<&'a Program>,
     composite: CompositeKey,
     sort: Vec<OrderKey>,
     count: Option<OrderKey>,
@@ -342,6 +343,10 @@ impl Run<'_> {
     /// Lists the layers of a band, and reads how many there are. What was recorded is submitted.
     fn list(&self, recording: &mut Recording, lists: &LayerLists, band: Band) -> Result<Listed, GpuError> {
         let FrameContext { gpu, targets, groups, shared, plan, .. } = *self.frame;
+        let Some((noting, cut)) = self.noting.zip(self.layering.cut) else {
+            recording.encoder.clear_buffer(lists.heads.buffer(), 0, None);
+            return Ok(Listed { nodes: 0, spilled: 0, longest: 0 });
+        };
         // What the header tells of lists before stays.
         recording.encoder.clear_buffer(lists.heads.buffer(), 0, Some(4));
         recording.encoder.clear_buffer(lists.heads.buffer(), 4 * 16, None);
@@ -355,7 +360,7 @@ impl Run<'_> {
         let pass = DrawnPass {
             name: "layers",
             view: "main",
-            lenses: &self.layering.cut.hiding.lenses,
+            lenses: self.layering.lenses(),
             shaded: Shaded::Counted,
             colors: &[],
             depth: Some(read_depth(&targets.depth.view)),
@@ -367,15 +372,15 @@ impl Run<'_> {
             let mut counted = draw_translucent(
                 self.frame,
                 pass,
-                self.layering.cut,
+                Some(cut),
                 true,
-                |section, all| list_key(plan, self.noting, section, all),
+                |section, all| list_key(plan, noting, section, all),
                 |pass, offset| pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
             );
             for part in self.followed.iter().flat_map(|followed| &followed.parts) {
                 let part = part.common(band.tile);
                 if !part.is_empty() {
-                    counted += self.note_rays(pass, part);
+                    counted += self.note_rays(pass, noting, part);
                 }
             }
             counted
@@ -388,11 +393,11 @@ impl Run<'_> {
     }
 
     /// Notes what bent rays meet in a part of the picture.
-    fn note_rays(&self, pass: &mut wgpu::RenderPass, part: PictureTile) -> Counted {
+    fn note_rays(&self, pass: &mut wgpu::RenderPass, noting: &Program, part: PictureTile) -> Counted {
         let FrameContext { groups, pipelines, plan, .. } = *self.frame;
         let Some(followed) = self.followed else { return Counted::NONE };
         scissor(pass, part);
-        pass.set_pipeline(pipelines.get(&RayListKey::new(plan, self.noting)));
+        pass.set_pipeline(pipelines.get(&RayListKey::new(plan, noting)));
         pass.set_bind_group(1, &groups.cut_city, &[0; 2]);
         pass.set_bind_group(3, &followed.group, &[]);
         pass.draw(0..3, 0..1);
@@ -533,10 +538,11 @@ impl Pass for ExactLayers {
     }
 
     fn add_keys(&self, input: Option<&Layering>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
-        let (Some(_), Some(LayerPrograms { noting, composite })) = (input, LayerPrograms::of(programs)) else { return };
+        let (Some(_), Some(composite)) = (input, programs.layering.as_ref()) else { return };
         keys.add_programs(28, [self.composite_key(plan, composite)]);
         keys.add_programs(28, count_key(plan));
         keys.add_programs(28, sorting(layering::words(plan), self.longest));
+        let Some(noting) = &programs.picture else { return };
         if plan.input.operations.bends.is_any() {
             keys.add_programs(28, [RayListKey::new(plan, noting)]);
         }
@@ -551,15 +557,15 @@ impl Pass for ExactLayers {
         board: &mut Board,
     ) -> Result<(), GpuError> {
         let plan = frame.plan;
-        let Some(programs) = LayerPrograms::of(frame.programs) else { return Ok(()) };
+        let Some(composite) = &frame.programs.layering else { return Ok(()) };
         layering.clear(frame, recording)?;
         let Some(region) = layering.region else { return Ok(()) };
         let words = layering::words(plan);
         let run = Run {
             frame,
             layering,
-            noting: programs.noting,
-            composite: self.composite_key(plan, programs.composite),
+            noting: frame.programs.picture.as_ref(),
+            composite: self.composite_key(plan, composite),
             sort: sorting(words, self.longest),
             // How many layers there are at most is known after the last band.
             count: count_key(plan),

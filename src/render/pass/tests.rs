@@ -130,6 +130,7 @@ impl Asked {
             haze: 0.0,
             volumes: &volumes,
             rays: &self.rays,
+            fields: &Default::default(),
             lens_count: 1,
             solids: &solids,
             operations: &operations,

@@ -20,13 +20,14 @@ use crate::render::{
 pub fn draw_translucent<K: PipelineKey>(
     frame: &FrameContext,
     pass: &mut wgpu::RenderPass,
-    cut: &Cut,
+    cut: Option<&Cut>,
     can_hold: bool,
     key_of: impl Fn(&SectionFacts, bool) -> K,
     bind: impl Fn(&mut wgpu::RenderPass, u32),
 ) -> Counted {
     let (view, shuffled) = (&frame.plan.input.view, frame.plan.settings.shuffled);
     let mut counted = Counted::NONE;
+    let Some(cut) = cut else { return counted };
     let mut sections = frame.cities.drawn_sections(&frame.plan.details, Some(cut));
     if shuffled.is_some_and(|by| by % 2 == 1) {
         sections.reverse();

@@ -49,6 +49,10 @@ pub const LAYERED_FLOATS: B =
     image(wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D2Array);
 /// A picture that is sampled.
 pub const SAMPLED: B = image(wgpu::TextureSampleType::Float { filterable: true }, wgpu::TextureViewDimension::D2);
+/// Texels of floats in three dimensions.
+pub const VOXELS: B = image(wgpu::TextureSampleType::Float { filterable: false }, wgpu::TextureViewDimension::D3);
+/// The same of whole numbers.
+pub const VOXEL_NUMBERS: B = image(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D3);
 /// Depth.
 pub const DEPTHS: B = image(wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2);
 /// Whole numbers.

@@ -41,6 +41,7 @@ const FILES: &[(&str, &str)] = &[
     built_in!("feature-lines"),
     built_in!("coming-lines"),
     built_in!("iso-lines"),
+    built_in!("transfer"),
     built_in!("eraser"),
     built_in!("cut-away"),
     built_in!("screen-door"),

@@ -72,6 +72,8 @@ pub struct Plan {
     pub varies: bool,
     /// How many lenses bend the rays of some pixels.
     pub bends: Bends,
+    /// Whether fields stand in the city.
+    pub fields: bool,
     /// Whether the frame shows what is under the sun of one of several moments alone; then looks vary, too.
     pub lit: bool,
     /// The time operators of its lenses, bottom lens first.
@@ -228,6 +230,7 @@ impl Plan {
     pub fn shading(mut self, handlers: &[EffectDefinition]) -> Self {
         self.transparency = self.is_seen_through(handlers);
         self.clear_materials = false;
+        self.fields = false;
         self.steps.retain(|step| !handlers[step.effect as usize].kind.decides_visibility());
         self.contents.clear();
         self.moves = false;
@@ -241,12 +244,15 @@ impl Plan {
     /// The part that decides how much of each translucent layer is seen, and how that looks; `None` where nothing is seen
     /// through.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
-        let is_of_layers =
-            |step: &&Step| !matches!(handlers[step.effect as usize].kind, EffectKind::Hide | EffectKind::Filter);
+        // What hides cuts fields, too, where they are laid.
+        let is_of_layers = |step: &&Step| match handlers[step.effect as usize].kind {
+            EffectKind::Hide => self.fields,
+            kind => kind != EffectKind::Filter,
+        };
         let steps = self.steps.iter().filter(is_of_layers).cloned().collect();
         let mut lenses = self.lenses.clone();
         lenses.iter_mut().for_each(|lens| lens.body = None);
-        let Self { haze, masks, clear_materials, partly, varies, bends, .. } = *self;
+        let Self { haze, masks, clear_materials, partly, varies, bends, fields, .. } = *self;
         let moves = partly && self.moves;
         // What is there by halves is asked how much of it.
         let timed = partly || varies;
@@ -262,6 +268,7 @@ impl Plan {
             moves,
             varies,
             bends,
+            fields,
             epochs,
             ..Self::default()
         };
@@ -269,7 +276,10 @@ impl Plan {
     }
 
     fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
-        self.clear_materials || self.partly || self.steps_of(EffectKind::Opacity, handlers).next().is_some()
+        self.clear_materials
+            || self.fields
+            || self.partly
+            || self.steps_of(EffectKind::Opacity, handlers).next().is_some()
     }
 
     /// How many `vec4f` of the parameters it reads.

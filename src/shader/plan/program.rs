@@ -65,6 +65,10 @@ impl Program {
             Self::Specialised(plan) => plan.bends,
             Self::Uber(uber) => uber.bends,
         };
+        let fields = match self {
+            Self::Specialised(plan) => plan.fields,
+            Self::Uber(uber) => uber.fields,
+        };
         let has_body = |kind| bodies.contains(&kind);
         Parts {
             lenses: has_lenses,
@@ -95,6 +99,7 @@ impl Program {
             moves,
             varies,
             bends,
+            fields,
             borders,
             by_ray,
         }
@@ -208,6 +213,8 @@ pub struct Parts {
     pub varies: bool,
     /// Lenses that bend rays.
     pub bends: Bends,
+    /// Fields in the city.
+    pub fields: bool,
     /// Soft borders of lenses.
     pub borders: bool,
     /// Borders of lenses along rays.

@@ -48,6 +48,8 @@ pub struct Uber {
     pub varies: bool,
     /// How many lenses bend the rays of some pixels.
     pub bends: Bends,
+    /// Whether fields stand in the city.
+    pub fields: bool,
     /// Whether a frame shows what is under the sun of one of several moments alone.
     pub lit: bool,
     /// The time operators of the scene's lenses, ascending, each once.
@@ -110,14 +112,26 @@ impl Uber {
     pub fn shading(self, handlers: &[EffectDefinition]) -> Self {
         let transparency = self.is_seen_through(handlers);
         let effects = self.of(handlers, |kind| !kind.decides_visibility());
-        let all = Self { effects, transparency, contents: false, clear_materials: false, moves: false, ..self };
+        let all = Self {
+            effects,
+            transparency,
+            contents: false,
+            clear_materials: false,
+            fields: false,
+            moves: false,
+            ..self
+        };
         if all.varies { all } else { Self { timed: false, partly: false, epochs: Vec::new(), ..all } }
     }
 
     /// The part that decides how much of each translucent layer is seen, and how that looks; `None` where nothing is seen
     /// through.
     pub fn layering(&self, handlers: &[EffectDefinition]) -> Option<Self> {
-        let effects = self.of(handlers, |kind| !matches!(kind, EffectKind::Hide | EffectKind::Filter));
+        let is_of_layers = |kind| match kind {
+            EffectKind::Hide => self.fields,
+            kind => kind != EffectKind::Filter,
+        };
+        let effects = self.of(handlers, is_of_layers);
         let is_timed = self.partly || self.varies;
         let epochs = if is_timed { self.epochs.clone() } else { Vec::new() };
         let moves = self.partly && self.moves;
@@ -128,6 +142,7 @@ impl Uber {
 
     fn is_seen_through(&self, handlers: &[EffectDefinition]) -> bool {
         self.clear_materials
+            || self.fields
             || self.partly
             || self.effects.iter().any(|&e| handlers[e as usize].kind == EffectKind::Opacity)
     }

@@ -2,6 +2,7 @@
 
 mod drawn;
 mod effect;
+mod field;
 mod model;
 mod picture;
 mod scene;
@@ -49,6 +50,7 @@ pub fn kinds() -> Vec<Kind> {
         scene::kind(),
         sheet::kind(),
         effect::kind(),
+        field::kind(),
         drawn::scenes(),
         drawn::effects(),
     ]

@@ -36,7 +36,8 @@ fn change(bytes: Vec<u8>, name: &str, pool: &Pool, random: &mut Random) -> Vec<u
     if bytes.starts_with(png::SIGNATURE) && !random.once_in(4) {
         return png::change(&bytes, random);
     }
-    let is_text = !bytes.contains(&0);
+    // Headers of fields are text before what may be none.
+    let is_text = is_field(name) || !bytes.contains(&0);
     let is = |ending: &str| name.ends_with(ending);
     match random.below(8) {
         0..=2 if is_text && (name.contains("json") || is("gltf")) => tree::change_json(bytes, pool, random),
@@ -49,9 +50,15 @@ fn change(bytes: Vec<u8>, name: &str, pool: &Pool, random: &mut Random) -> Vec<u
     }
 }
 
+/// Whether a file is a field, or is beside one, by the name that seeds have.
+fn is_field(name: &str) -> bool {
+    name.contains(".field.")
+}
+
 /// What may mean something to the reader of a file of this name.
 fn words_of(name: &str) -> &'static [&'static str] {
     match name.rsplit('.').next() {
+        _ if is_field(name) => words::WORDS_OF_FIELDS,
         Some("toml") => words::WORDS_OF_SCENES,
         Some("wgsl") => words::WORDS_OF_WGSL,
         _ => words::WORDS,

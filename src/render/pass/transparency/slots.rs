@@ -210,7 +210,7 @@ impl Run<'_> {
             let pass = DrawnPass {
                 name: of.name(),
                 view: "main",
-                lenses: &self.layering.cut.hiding.lenses,
+                lenses: self.layering.lenses(),
                 shaded: Shaded::Counted,
                 colors: &[],
                 depth: Some(read_depth(&targets.depth.view)),
@@ -264,7 +264,7 @@ impl Run<'_> {
         let pass = DrawnPass {
             name: FragmentPass::Tail.name(),
             view: "main",
-            lenses: &self.layering.cut.hiding.lenses,
+            lenses: self.layering.lenses(),
             shaded: Shaded::Counted,
             colors: &colors.map(Some),
             depth: Some(read_depth(&targets.depth.view)),

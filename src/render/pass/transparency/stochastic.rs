@@ -107,7 +107,7 @@ impl Pass for StochasticLayers {
         let pass = DrawnPass {
             name: FragmentPass::Chance.name(),
             view: "main",
-            lenses: &layering.cut.hiding.lenses,
+            lenses: layering.lenses(),
             shaded: Shaded::Counted,
             colors: &colors,
             depth: Some(kept_depth(&targets.depth.view)),

@@ -1,0 +1,512 @@
+//! Volumes of a scene: their fields as rays meet them, and where they stand.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use glam::{DMat3, DVec2, DVec3};
+
+use crate::{
+    field::{self, Component, FieldFile, Grid, Values},
+    geom::Aabb,
+    render::{eye::PictureTile, layout},
+    scene::volume::{MOST_VOLUMES, RAMP_ENTRIES, Volume, VolumeLight, VolumeMode},
+    view::View,
+};
+
+/// Samples along an edge of the bricks that tell where nothing is seen (`lib/fields.wgsl`).
+pub(super) const BRICK: usize = 8;
+/// Steps along the longest way through a field, at most: software adapters end the loops of a shader after 65535 rounds in all.
+const MOST_STEPS: f64 = 8192.0;
+
+/// Values of a field, one of each sample.
+#[derive(Debug)]
+pub(super) struct FieldData {
+    pub size: [usize; 3],
+    pub values: Values,
+    /// The smallest and the largest.
+    pub range: [f32; 2],
+    /// Bricks along each axis, and the smallest and largest value of each, those of its border included; none where all are missing.
+    pub bricks: [usize; 3],
+    pub brick_ranges: Vec<Option<[f32; 2]>>,
+    /// The largest difference of neighbours along each axis.
+    steepest: [f32; 3],
+    /// How many labels it has a texel for: values are whole numbers 0 to 255.
+    is_labels: bool,
+}
+
+impl FieldData {
+    fn new(grid: &Grid, values: Values, range: [f32; 2]) -> Self {
+        let size = grid.size;
+        let bricks = size.map(|n| (n - 1).max(1).div_ceil(BRICK));
+        let at = |[x, y, z]: [usize; 3]| values.get((z * size[1] + y) * size[0] + x);
+        let mut brick_ranges = Vec::with_capacity(bricks.iter().product());
+        for brick in places(bricks) {
+            let ends = [0, 1, 2].map(|i| ((brick[i] + 1) * BRICK).min(size[i] - 1));
+            let spans = [0, 1, 2].map(|i| ends[i] + 1 - brick[i] * BRICK);
+            let own = places(spans).map(|own| at([0, 1, 2].map(|i| brick[i] * BRICK + own[i])));
+            let known = own.filter(|value| value.is_finite());
+            let ends = known.fold(None, |ends: Option<[f32; 2]>, value| {
+                let [low, high] = ends.unwrap_or([value; 2]);
+                Some([low.min(value), high.max(value)])
+            });
+            brick_ranges.push(ends);
+        }
+        let steepest = [0, 1, 2].map(|axis| {
+            let difference = |place: [usize; 3]| {
+                let mut next = place;
+                next[axis] += 1;
+                let difference = (at(next) - at(place)).abs();
+                if difference.is_finite() { difference } else { 0.0 }
+            };
+            let mut all = size;
+            all[axis] -= 1;
+            places(all).map(difference).fold(0.0, f32::max)
+        });
+        let is_labels = matches!(values, Values::U8(_)) || has_labels(&values);
+        Self { size, values, range, bricks, brick_ranges, steepest, is_labels }
+    }
+}
+
+impl FieldData {
+    /// How many values there are in each of so many columns between two.
+    fn histogram(&self, [low, high]: [f64; 2]) -> Vec<u64> {
+        let mut columns = vec![0; COLUMNS];
+        let per_value = if high > low { COLUMNS as f64 / (high - low) } else { 0.0 };
+        for i in 0..self.values.len() {
+            let at = (f64::from(self.values.get(i)) - low) * per_value;
+            if at >= 0.0 && at <= COLUMNS as f64 {
+                columns[(at as usize).min(COLUMNS - 1)] += 1;
+            }
+        }
+        columns
+    }
+}
+
+fn has_labels(values: &Values) -> bool {
+    match values {
+        Values::U8(_) => true,
+        Values::F32(values) => values.iter().all(|v| (0.0..=255.0).contains(v) && v.fract() == 0.0),
+    }
+}
+
+/// All places of a box, x fastest.
+fn places(size: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    let [w, h, d] = size;
+    (0..d).flat_map(move |z| (0..h).flat_map(move |y| (0..w).map(move |x| [x, y, z])))
+}
+
+/// What of a file is shown.
+#[derive(Clone, Debug, PartialEq)]
+struct Shown {
+    file: PathBuf,
+    field: Option<String>,
+    component: Component,
+    time_step: u32,
+}
+
+/// What a volume shows, for legends and for those who choose colours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShownVolume {
+    /// Its place among the volumes of the scene.
+    pub index: usize,
+    /// What its values are called, and their unit.
+    pub title: String,
+    /// See `title`.
+    pub unit: Option<String>,
+    /// The values at the ends of its transfer function.
+    pub ends: [f64; 2],
+    /// The smallest and the largest value.
+    pub range: [f64; 2],
+    /// How many samples are in each of [`COLUMNS`] columns of equal width from one end of the transfer function to the other.
+    pub histogram: Vec<u64>,
+    /// How many samples there are along each axis.
+    pub size: [usize; 3],
+    /// Steps in time.
+    pub steps: usize,
+    /// The arrays of its file.
+    pub arrays: Vec<String>,
+}
+
+/// Columns of a histogram.
+pub const COLUMNS: usize = 128;
+
+/// Fields that were loaded, kept from picture to picture.
+#[derive(Debug, Default)]
+pub(super) struct KnownFields {
+    files: Vec<(PathBuf, Arc<FieldFile>)>,
+    data: Vec<(Shown, Arc<FieldData>)>,
+}
+
+/// A volume where it stands.
+#[derive(Clone, Debug)]
+pub(super) struct PlacedField {
+    pub data: Arc<FieldData>,
+    /// In the city.
+    grid: Grid,
+    pub entries: Vec<[f32; 4]>,
+    /// The values at the ends of its ramp.
+    ends: [f64; 2],
+    volume: Volume,
+    /// Metres.
+    thickness: f64,
+    step: f64,
+}
+
+/// What there is among the fields of a picture, for its programs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct FieldKinds {
+    /// Some are no surfaces, and not one layer.
+    pub walked: bool,
+    /// Some are surfaces.
+    pub surfaces: bool,
+    /// Some are one layer.
+    pub projected: bool,
+    /// Light acts on some.
+    pub lit: bool,
+    /// And shadows do.
+    pub shadowed: bool,
+    /// Some are labels.
+    pub labels: bool,
+    /// Some are none.
+    pub numbers: bool,
+    /// Some are seen where they change.
+    pub steep: bool,
+}
+
+/// The volumes of a scene that are shown.
+#[derive(Clone, Debug, Default)]
+pub struct PlacedFields(pub(super) Vec<PlacedField>);
+
+impl KnownFields {
+    /// The volumes of a scene, those that are shown.
+    ///
+    /// # Errors
+    /// A file that is none, or has not what is asked for; too many.
+    pub fn of_scene(&mut self, volumes: &[Volume]) -> Result<PlacedFields, String> {
+        let shown: Vec<&Volume> = volumes.iter().filter(|volume| volume.visible).collect();
+        if shown.len() > MOST_VOLUMES {
+            return Err(format!("{} volumes are shown; one picture takes {MOST_VOLUMES}", shown.len()));
+        }
+        if !volumes.is_empty() {
+            self.files.retain(|(file, _)| volumes.iter().any(|volume| volume.file == *file));
+            self.data.retain(|(of, _)| volumes.iter().any(|volume| volume.file == of.file));
+        }
+        shown.into_iter().map(|volume| self.placed(volume)).collect::<Result<_, _>>().map(PlacedFields)
+    }
+
+    /// What the volumes of a scene show.
+    ///
+    /// # Errors
+    /// Those of [`Self::of_scene`].
+    pub fn shown(&mut self, volumes: &[Volume]) -> Result<Vec<ShownVolume>, String> {
+        let placed = self.of_scene(volumes)?.0;
+        let indices = (0..volumes.len()).filter(|i| volumes[*i].visible);
+        let shown = |(index, field): (usize, PlacedField)| {
+            let volume = &volumes[index];
+            let file = self.file(&volume.file)?;
+            let own = array_of(volume, &file).map(|own| (own.name.clone(), own.unit.clone(), own.steps.len()));
+            let (name, unit, steps) = own.unwrap_or_default();
+            Ok(ShownVolume {
+                index,
+                title: volume.label.clone().unwrap_or(name),
+                unit: volume.unit.clone().or(unit),
+                ends: field.ends,
+                range: field.data.range.map(f64::from),
+                histogram: field.data.histogram(field.ends),
+                size: field.data.size,
+                steps,
+                arrays: file.fields.iter().map(|field| field.name.clone()).collect(),
+            })
+        };
+        indices.zip(placed).map(shown).collect()
+    }
+
+    /// Loads a file, where it is not there yet.
+    fn file(&mut self, file: &Path) -> Result<Arc<FieldFile>, String> {
+        if let Some((_, known)) = self.files.iter().find(|(of, _)| of == file) {
+            return Ok(known.clone());
+        }
+        let loaded = field::load(file).map_err(|error| error.to_string())?;
+        loaded.warnings.iter().for_each(|warning| log::warn!("{}: {warning}", file.display()));
+        let loaded = Arc::new(loaded);
+        self.files.push((file.to_owned(), loaded.clone()));
+        Ok(loaded)
+    }
+
+    fn placed(&mut self, volume: &Volume) -> Result<PlacedField, String> {
+        let wrong = |key: &str, message: String| format!("volume \"{}\": {key}: {message}", volume.name);
+        let file = self.file(&volume.file).map_err(|error| format!("volume \"{}\": {error}", volume.name))?;
+        let names = || file.fields.iter().map(|field| format!("\"{}\"", field.name)).collect::<Vec<_>>().join(", ");
+        let own = array_of(volume, &file)
+            .ok_or_else(|| wrong("field", format!("the file has no such array; it has {}", names())))?;
+        let steps = own.steps.len();
+        if volume.time_step as usize >= steps {
+            return Err(wrong("time_step", format!("the file has {steps} steps in time, 0 to {}", steps - 1)));
+        }
+        let data = self.data(volume, own)?;
+        if volume.labels && !data.is_labels {
+            return Err(wrong("labels", "not all values are whole numbers 0 to 255; false would be right".to_owned()));
+        }
+        let grid = placed_grid(volume, &own.grid);
+        let smallest =
+            (0..3).filter(|i| data.size[*i] > 1).map(|i| grid.steps[i].length()).fold(f64::INFINITY, f64::min);
+        let smallest = if smallest.is_finite() { smallest } else { 1.0 };
+        let thickness = volume.thickness.unwrap_or(smallest);
+        let ends = match volume.labels {
+            true => [0.0, (RAMP_ENTRIES - 1) as f64],
+            false => volume.transfer.ends(data.range.map(f64::from)),
+        };
+        let entries = match volume.labels {
+            true => volume.transfer.label_entries(thickness),
+            false => volume.transfer.entries(ends, thickness),
+        };
+        let [low, high] = grid.bounds();
+        let step = (volume.step * smallest).max(low.distance(high) / MOST_STEPS);
+        Ok(PlacedField { data, grid, entries, ends, volume: volume.clone(), thickness, step })
+    }
+
+    /// The values that are shown.
+    fn data(&mut self, volume: &Volume, own: &field::Field) -> Result<Arc<FieldData>, String> {
+        let shown = Shown {
+            file: volume.file.clone(),
+            field: volume.field.clone(),
+            component: volume.component,
+            time_step: volume.time_step,
+        };
+        if let Some((_, known)) = self.data.iter().find(|(of, _)| *of == shown) {
+            return Ok(known.clone());
+        }
+        let scalars = own.scalar(volume.time_step as usize, volume.component);
+        let range = scalars.range.ok_or_else(|| {
+            format!(
+                "volume \"{}\": component: none of its values is known; \"{}\" has {} components",
+                volume.name, own.name, own.components
+            )
+        })?;
+        let data = Arc::new(FieldData::new(&own.grid, scalars.values, range));
+        self.data.push((shown, data.clone()));
+        Ok(data)
+    }
+}
+
+/// The array of a file that a volume shows.
+fn array_of<'f>(volume: &Volume, file: &'f FieldFile) -> Option<&'f field::Field> {
+    match &volume.field {
+        None => file.fields.first(),
+        Some(name) => file.fields.iter().find(|field| field.name == *name),
+    }
+}
+
+/// The grid of a field where a volume has it in the city.
+fn placed_grid(volume: &Volume, own: &Grid) -> Grid {
+    // Turned so that what is up in the file is up.
+    let turned = |v: DVec3| if volume.y_up { DVec3::new(v.x, -v.z, v.y) } else { v };
+    let steps = own.steps.map(turned);
+    let steps = match volume.spacing {
+        None => steps,
+        Some(spacing) => [0, 1, 2].map(|i| steps[i].normalize_or(DVec3::AXES[i]) * spacing[i]),
+    };
+    Grid { size: own.size, origin: volume.origin.unwrap_or(turned(own.origin)), steps }
+}
+
+impl PlacedField {
+    /// The box around it, metres.
+    pub fn bounds(&self) -> Aabb {
+        self.corners().into_iter().fold(Aabb::EMPTY, |all, corner| all.union(Aabb { min: corner, max: corner }))
+    }
+
+    /// From where to where it goes, in samples.
+    fn span(&self, axis: usize) -> [f64; 2] {
+        let is_cut = self.volume.mode == VolumeMode::Slice && self.volume.slice.axis as usize == axis;
+        match self.data.size[axis] {
+            // A slice may be at its very end.
+            n if is_cut => [-0.5, n as f64 - 0.5],
+            1 => [-0.5, 0.5],
+            n => [0.0, (n - 1) as f64],
+        }
+    }
+
+    fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let place = DVec3::from_array([0, 1, 2].map(|axis| self.span(axis)[i >> axis & 1]));
+            self.grid.position(place)
+        })
+    }
+
+    /// From a value to its place on the ramp: times the first, plus the second.
+    fn on_ramp(&self) -> [f64; 2] {
+        let [low, high] = self.ends;
+        if high == low { [0.0, 0.5] } else { [1.0 / (high - low), -low / (high - low)] }
+    }
+
+    /// The bricks of which something is seen.
+    pub fn seen_bricks(&self) -> Vec<u8> {
+        let [scale, shift] = self.on_ramp();
+        let level = self.level();
+        let volume = &self.volume;
+        let is_seen = |ends: &Option<[f32; 2]>| {
+            let Some(ends) = ends else { return false };
+            let [a, b] =
+                ends.map(|value| (f64::from(value) * scale + shift).clamp(0.0, 1.0) * (RAMP_ENTRIES - 1) as f64);
+            let (low, high) = (a.min(b).floor() as usize, a.max(b).ceil() as usize);
+            match volume.mode {
+                // Of labels those between are others.
+                VolumeMode::Isosurface if !volume.labels => {
+                    let margin = 1e-5;
+                    let [a, b] = ends.map(|value| f64::from(value) * scale + shift);
+                    a.min(b) - margin <= level && level <= a.max(b) + margin
+                }
+                VolumeMode::Slice => true,
+                _ => self.entries[low..=high.min(RAMP_ENTRIES - 1)].iter().any(|entry| entry[3] > 0.0),
+            }
+        };
+        self.data.brick_ranges.iter().map(|ends| u8::from(is_seen(ends))).collect()
+    }
+
+    /// Where its surface, or its slice, is.
+    fn level(&self) -> f64 {
+        let [scale, shift] = self.on_ramp();
+        match self.volume.mode {
+            VolumeMode::Slice => (self.data.size[self.volume.slice.axis as usize] - 1) as f64 * self.volume.slice.at,
+            _ if self.volume.labels => 0.5,
+            _ => self.volume.level.map_or(0.5, |level| level * scale + shift),
+        }
+    }
+
+    /// As shaders read it; `first`: its first slices in the textures of values and of bricks, and its first entry of the ramps. `texels`: from texels to
+    /// values.
+    fn row(&self, view: &View, first: [u32; 3], texels: [f64; 2]) -> layout::Field {
+        // Samples from places in view space: positions are relative to the eye there.
+        let to_world = view.basis.view_from_world().transpose();
+        let from_index = DMat3::from_cols(self.grid.steps[0], self.grid.steps[1], self.grid.steps[2]);
+        let to_index = from_index.inverse();
+        let of_view = (to_index * to_world).transpose();
+        let eye = to_index * (view.camera.eye - self.grid.origin);
+        let axis = |i: usize| of_view.col(i).extend(eye[i]).as_vec4().to_array();
+        let [scale, shift] = self.on_ramp();
+        let volume = &self.volume;
+        let mode = match volume.mode {
+            VolumeMode::Direct | VolumeMode::Gradient => layout::FIELD_DIRECT,
+            VolumeMode::XRay => layout::FIELD_ABSORBS,
+            VolumeMode::Isosurface | VolumeMode::Slice => layout::FIELD_SURFACE,
+            VolumeMode::Maximum => layout::FIELD_MAXIMUM,
+            VolumeMode::Minimum => layout::FIELD_MINIMUM,
+            VolumeMode::Average => layout::FIELD_MEAN,
+        };
+        let flags = [
+            (volume.light != VolumeLight::None, layout::FIELD_LIT),
+            (volume.light == VolumeLight::Shadowed, layout::FIELD_SHADOWED),
+            (volume.labels, layout::FIELD_LABELS),
+            (volume.mode == VolumeMode::Gradient, layout::FIELD_STEEP),
+            (volume.mode == VolumeMode::Slice, layout::FIELD_SLICE << volume.slice.axis),
+        ];
+        let steepest =
+            (0..3).map(|i| f64::from(self.data.steepest[i]) / self.grid.steps[i].length()).fold(0.0, f64::max);
+        layout::Field {
+            to_x: axis(0),
+            to_y: axis(1),
+            to_z: axis(2),
+            low: [0, 1, 2].map(|i| self.span(i)[0] as f32),
+            mode,
+            high: [0, 1, 2].map(|i| self.span(i)[1] as f32),
+            flags: flags.iter().filter(|(is_on, _)| *is_on).map(|(_, flag)| flag).sum(),
+            last: self.data.size.map(|n| (n - 1) as f32),
+            first_slice: first[0],
+            scale: (texels[0] * scale) as f32,
+            shift: (texels[1] * scale + shift) as f32,
+            level: self.level() as f32,
+            steepest: (steepest * scale.abs()).max(1e-30) as f32,
+            thickness: self.thickness as f32,
+            first_brick: first[1],
+            ramp: first[2],
+            reserved: 0,
+        }
+    }
+
+    /// The rectangle of the picture in which it may be seen; `None`: it is behind the eye.
+    fn rectangle(&self, view: &View) -> Option<[DVec2; 2]> {
+        let size = DVec2::new(view.size[0].into(), view.size[1].into());
+        let half = view.half_extent();
+        let places = self.corners().map(|corner| view.basis.view_from_world() * (corner - view.camera.eye));
+        let near = view.camera.near_m;
+        let is_flat = view.is_orthographic();
+        if !is_flat && places.iter().all(|place| -place.z < near) {
+            return None;
+        }
+        if !is_flat && places.iter().any(|place| -place.z < near) {
+            return Some([DVec2::ZERO, size]);
+        }
+        let across = places.map(|p| if is_flat { p.truncate() } else { p.truncate() / -p.z });
+        let pixels = across.map(|a| DVec2::new(0.5 + 0.5 * a.x / half.x, 0.5 - 0.5 * a.y / half.y) * size);
+        let (low, high) = pixels.iter().fold((size, DVec2::ZERO), |(low, high), p| (low.min(*p), high.max(*p)));
+        Some([low - 1.5, high + 1.5])
+    }
+}
+
+impl PlacedFields {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// What there is among them.
+    pub fn kinds(&self) -> FieldKinds {
+        let any = |is: &dyn Fn(&Volume) -> bool| self.0.iter().any(|field| is(&field.volume));
+        let is_surface = |mode: VolumeMode| matches!(mode, VolumeMode::Isosurface | VolumeMode::Slice);
+        let is_layer =
+            |mode: VolumeMode| matches!(mode, VolumeMode::Maximum | VolumeMode::Minimum | VolumeMode::Average);
+        FieldKinds {
+            walked: any(&|volume| !is_surface(volume.mode) && !is_layer(volume.mode)),
+            surfaces: any(&|volume| is_surface(volume.mode)),
+            projected: any(&|volume| is_layer(volume.mode)),
+            lit: any(&|volume| volume.light != VolumeLight::None),
+            shadowed: any(&|volume| volume.light == VolumeLight::Shadowed),
+            labels: any(&|volume| volume.labels),
+            numbers: any(&|volume| !volume.labels),
+            steep: any(&|volume| volume.mode == VolumeMode::Gradient),
+        }
+    }
+
+    /// The box around all, metres.
+    pub fn bounds(&self) -> Aabb {
+        self.0.iter().fold(Aabb::EMPTY, |all, field| all.union(field.bounds()))
+    }
+
+    /// The part of a tile in which some may be seen; none where there is no pixel. `bent`: rays may go anywhere.
+    pub fn part(&self, view: &View, tile: PictureTile, bent: bool) -> Option<PictureTile> {
+        let whole = PictureTile::whole(tile.size);
+        if bent && !self.is_empty() {
+            return Some(whole);
+        }
+        let of_field = |field: &PlacedField| {
+            let [low, high] = field.rectangle(view)?;
+            let origin = DVec2::new(tile.origin[0].into(), tile.origin[1].into());
+            let size = DVec2::new(tile.size[0].into(), tile.size[1].into());
+            let [low, high] =
+                [(low - origin).clamp(DVec2::ZERO, size).floor(), (high - origin).clamp(DVec2::ZERO, size).ceil()];
+            let part = PictureTile {
+                origin: [low.x as u32, low.y as u32],
+                size: [(high.x - low.x) as u32, (high.y - low.y) as u32],
+            };
+            (!part.is_empty()).then_some(part)
+        };
+        self.0.iter().filter_map(of_field).reduce(PictureTile::around)
+    }
+
+    /// As shaders read them; `firsts` and `texels` of each as [`PlacedField::row`] has them.
+    pub fn uniform(&self, view: &View, firsts: &[[u32; 2]], texels: &[[f64; 2]], jittered: bool) -> layout::FieldTable {
+        let mut made: layout::FieldTable = bytemuck::Zeroable::zeroed();
+        made.count = self.0.len().min(MOST_VOLUMES) as u32;
+        made.is_jittered = u32::from(jittered);
+        made.step = self.0.iter().map(|field| field.step).fold(f64::INFINITY, f64::min) as f32;
+        for (i, (field, (first, texels))) in self.0.iter().zip(firsts.iter().zip(texels)).take(MOST_VOLUMES).enumerate()
+        {
+            let ramp = i * RAMP_ENTRIES;
+            made.each[i] = field.row(view, [first[0], first[1], ramp as u32], *texels);
+            made.ramps[ramp..ramp + RAMP_ENTRIES].copy_from_slice(&field.entries);
+        }
+        made
+    }
+}
