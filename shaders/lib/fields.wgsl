@@ -61,6 +61,7 @@ const FIELD_LABELS: u32 = 4u;       // numbers of things, not to be mixed
 const FIELD_STEEP: u32 = 8u;        // seen as far as it changes
 const FIELD_SLICE: u32 = 16u;       // its surface is a plane across its first axis; the next two bits: across its second, its third
 const FIELD_SLICES: u32 = 112u;
+const FIELD_KEPT: u32 = 128u;       // lenses take nothing of it away
 
 const RAMP_ENTRIES: f32 = 256.0;
 const BRICK: f32 = 8.0;
@@ -253,7 +254,7 @@ fn look_of_field(number: u32, pixel: vec2i, ray: Ray, distance: f32, place: vec3
     let fragment = Fragment(pixel, point.depth, seen, height, NO_SURFACE, NO_OBJECT, PART_OTHER, point.normal, ray, view.orthographic == 1u,
                             0u, dither(pixel, view.sample_index), 0.0, 1.0);
     let classes = classes_at(sight_at(pixel, ray, point.depth, NO_OBJECT), part);
-    let kept = kept_of_field(fragment, point, classes);
+    let kept = select(kept_of_field(fragment, point, classes), 1.0, (flags & FIELD_KEPT) != 0u);
     return vec4f(shade(&point, classes), kept);
 }
 

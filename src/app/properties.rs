@@ -2,6 +2,7 @@
 //! can be said here.
 
 use eframe::egui::{self, RichText, Ui};
+use glam::DVec3;
 use toml::{Table as TomlTable, Value};
 
 use crate::{
@@ -13,6 +14,7 @@ use crate::{
         },
         state::Window,
     },
+    field::PLUME,
     figure::scene_file::{
         keys::{Key, Kind},
         lens::LENS,
@@ -20,6 +22,7 @@ use crate::{
         overlay::OVERLAY,
         scene::ROOT,
     },
+    view::Camera,
 };
 
 pub mod edits;
@@ -27,13 +30,14 @@ mod handled;
 mod kinds;
 pub mod looks;
 mod tables;
+mod transfer;
 mod values;
 mod widget;
 
 /// Keys of the scene that stand elsewhere in the window: in the list of lenses, and with the chosen one.
 const ELSEWHERE: &[&str] = &["veduta", "lens", "overlay"];
 /// The keys that are needed most.
-const FIRST: &[&str] = &["camera", "sun", "style", "poi", "figure"];
+const FIRST: &[&str] = &["camera", "sun", "style", "poi", "volume", "figure"];
 
 /// The panel.
 pub fn show(window: &mut Window, drafts: &mut Drafts, ui: &mut Ui) {
@@ -117,7 +121,11 @@ fn overlay(ui: &mut Ui, edits: &mut Edits, window: &Window, root: &TomlTable, le
 
 /// A table, or a list of tables, of the scene.
 fn section(window: &Window, edits: &mut Edits, root: &TomlTable, key: &Key, ui: &mut Ui) {
-    let heading = if key.name == "poi" { "Points of interest".to_owned() } else { title_of(key.name) };
+    let heading = match key.name {
+        "poi" => "Points of interest".to_owned(),
+        "volume" => "Volumes".to_owned(),
+        name => title_of(name),
+    };
     egui::CollapsingHeader::new(RichText::new(heading).strong()).id_salt(key.name).show(ui, |ui| {
         ui.weak(key.doc);
         match key.kind {
@@ -126,15 +134,23 @@ fn section(window: &Window, edits: &mut Edits, root: &TomlTable, key: &Key, ui: 
                 table(ui, edits, keys, Shown::All, &own, key.name);
             }
             Kind::Tables(keys) => {
+                if key.name == "volume" {
+                    transfers(window, edits, root, ui);
+                }
                 let none = Value::Array(Vec::new());
                 tables(ui, edits, key, keys, root.get(key.name).unwrap_or(&none), key.name);
-                if let ("poi", Some(at)) = (key.name, window.canvas.middle(window.frame.as_deref()))
+                if let ("poi" | "volume", Some(at)) = (key.name, window.canvas.middle(window.frame.as_deref()))
                     && ui.button("Add one in the middle of the picture").clicked()
                 {
-                    let count = window.document.scene().pois.len();
-                    let at = at.to_array().map(|c| Value::Float((c * 100.0).round() / 100.0)).to_vec();
-                    let poi = TomlTable::from_iter([("at".to_owned(), Value::Array(at))]);
-                    edits.push(format!("poi.{count}"), To::Value(Value::Table(poi)));
+                    let scene = window.document.scene();
+                    let numbers = |point: DVec3| {
+                        Value::Array(point.to_array().map(|c| Value::Float((c * 100.0).round() / 100.0)).to_vec())
+                    };
+                    let (count, table) = match key.name {
+                        "poi" => (scene.pois.len(), TomlTable::from_iter([("at".to_owned(), numbers(at))])),
+                        _ => (scene.volumes.len(), volume_around(at, window.camera(), numbers)),
+                    };
+                    edits.push(format!("{}.{count}", key.name), To::Value(Value::Table(table)));
                 }
             }
             _ => {}
@@ -143,6 +159,33 @@ fn section(window: &Window, edits: &mut Edits, root: &TomlTable, key: &Key, ui: 
             command_line(window, ui);
         }
     });
+}
+
+/// The built-in volume around a place, half as wide as it is far away.
+fn volume_around(at: DVec3, camera: Option<Camera>, numbers: impl Fn(DVec3) -> Value) -> TomlTable {
+    let far = camera.map_or(100.0, |camera| camera.eye.distance(at)).max(1.0);
+    // It is 65 x 65 x 25 samples.
+    let step = 0.5 * far / 64.0;
+    let low = DVec3::new(at.x - 32.0 * step, at.y - 32.0 * step, at.z);
+    TomlTable::from_iter([
+        ("file".to_owned(), Value::String(PLUME.to_owned())),
+        ("origin".to_owned(), numbers(low)),
+        ("spacing".to_owned(), numbers(DVec3::new(step, step, 0.5 * step).max(DVec3::splat(0.01)))),
+    ])
+}
+
+/// The transfer functions of the volumes that are shown.
+fn transfers(window: &Window, edits: &mut Edits, root: &TomlTable, ui: &mut Ui) {
+    let scene = window.document.scene();
+    let Some(frame) = window.frame.as_deref() else { return };
+    for shown in &frame.volumes {
+        let Some(volume) = scene.volumes.get(shown.index).filter(|volume| !volume.labels) else { continue };
+        let path = format!("volume.{}", shown.index);
+        let given = root.get("volume").and_then(|all| all.get(shown.index)).and_then(|own| own.get("transfer"));
+        let given = given.and_then(Value::as_table).cloned().unwrap_or_default();
+        ui.label(format!("{}: {}", volume.name, shown.title));
+        transfer::editor(ui, edits, volume, shown, &given, &path);
+    }
 }
 
 fn command_line(window: &Window, ui: &mut Ui) {

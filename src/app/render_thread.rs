@@ -40,6 +40,7 @@ use crate::{
     gpu::{Gpu, GpuError},
     lens::{ray_path::RayPaths, thematic::attribute_names},
     render::{
+        fields::ShownVolume,
         picture::{Aovs, RenderError, Request, ShownOverlay, Studio},
         stats::{self, Statistics},
     },
@@ -164,6 +165,8 @@ pub struct Frame {
     pub shown: Option<(Vec<u32>, Vec<f32>)>,
     /// How lenses bend rays in it.
     pub rays: RayPaths,
+    /// What its volumes show; only of pictures that stand still.
+    pub volumes: Vec<ShownVolume>,
     /// Where overlays stand in it; only of pictures that stand still.
     pub overlays: Vec<ShownOverlay>,
     /// Samples per pixel.
@@ -594,9 +597,10 @@ impl Worker {
             let scene = studio.on_ground(&scene)?;
             let picture = figure::draw_next(studio, &scene, &request, standing)?;
             let view = View::new(studio.camera(&scene, size), size, &Aabb::EMPTY)?;
-            Ok((picture, view))
+            let volumes = if still { studio.volumes(&scene)? } else { Vec::new() };
+            Ok((picture, view, volumes))
         });
-        let (picture, view) = match drawn {
+        let (picture, view, volumes) = match drawn {
             Ok(drawn) => drawn,
             // Something else is wanted before; if that is no other picture, this one goes on later.
             Err(RenderError::Interrupted) => return self.refine = Some(draw),
@@ -622,6 +626,7 @@ impl Worker {
             rgba: picture.rgba,
             overlays: picture.overlays,
             rays: picture.rays,
+            volumes,
             shown: picture.object_id.zip(picture.depth),
             samples: request.samples,
             is_final: is_refined,

@@ -173,7 +173,7 @@ impl Window {
                 Document::new(Scene { city, ..Scene::default() }, None)
             }
         };
-        if document.scene().city.files.is_empty() {
+        if document.scene().is_empty() {
             return self.fail("The scene names no city; [city] files = [\"FILE\"] would be right.".to_owned());
         }
         for file in files {

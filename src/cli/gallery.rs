@@ -35,6 +35,7 @@ macro_rules! scenes {
 pub const SCENES: &[(&str, &str)] = scenes! {
     "bent-city"
     "call-outs"
+    "carbon-dioxide"
     "changed"
     "delft-age"
     "delft-detail"
@@ -71,6 +72,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "shown-as"
     "sights"
     "sights-of-the-hague"
+    "storm"
     "street-in-the-hague"
     "street-in-vienna"
     "three-lenses"
@@ -110,6 +112,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "visitor"
     "wang-12"
     "wang-3"
+    "wang-frog"
     "who-hides-the-church"
     "window"
 };

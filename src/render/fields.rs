@@ -137,6 +137,8 @@ pub const COLUMNS: usize = 128;
 pub(super) struct KnownFields {
     files: Vec<(PathBuf, Arc<FieldFile>)>,
     data: Vec<(Shown, Arc<FieldData>)>,
+    /// Counted between the ends of transfer functions.
+    histograms: Vec<(Arc<FieldData>, [f64; 2], Vec<u64>)>,
 }
 
 /// A volume where it stands.
@@ -192,6 +194,8 @@ impl KnownFields {
         if !volumes.is_empty() {
             self.files.retain(|(file, _)| volumes.iter().any(|volume| volume.file == *file));
             self.data.retain(|(of, _)| volumes.iter().any(|volume| volume.file == of.file));
+            let data = &self.data;
+            self.histograms.retain(|(of, ..)| data.iter().any(|(_, own)| Arc::ptr_eq(of, own)));
         }
         shown.into_iter().map(|volume| self.placed(volume)).collect::<Result<_, _>>().map(PlacedFields)
     }
@@ -214,13 +218,27 @@ impl KnownFields {
                 unit: volume.unit.clone().or(unit),
                 ends: field.ends,
                 range: field.data.range.map(f64::from),
-                histogram: field.data.histogram(field.ends),
+                histogram: self.histogram(&field),
                 size: field.data.size,
                 steps,
                 arrays: file.fields.iter().map(|field| field.name.clone()).collect(),
             })
         };
         indices.zip(placed).map(shown).collect()
+    }
+
+    /// How many samples are where between the ends of a transfer function: counted once.
+    fn histogram(&mut self, field: &PlacedField) -> Vec<u64> {
+        let is_it = |(data, ends, _): &&(Arc<FieldData>, [f64; 2], Vec<u64>)| {
+            Arc::ptr_eq(data, &field.data) && *ends == field.ends
+        };
+        if let Some((_, _, columns)) = self.histograms.iter().find(is_it) {
+            return columns.clone();
+        }
+        let columns = field.data.histogram(field.ends);
+        self.histograms.truncate(2 * MOST_VOLUMES - 1);
+        self.histograms.insert(0, (field.data.clone(), field.ends, columns.clone()));
+        columns
     }
 
     /// Loads a file, where it is not there yet.
@@ -399,6 +417,7 @@ impl PlacedField {
             (volume.light != VolumeLight::None, layout::FIELD_LIT),
             (volume.light == VolumeLight::Shadowed, layout::FIELD_SHADOWED),
             (volume.labels, layout::FIELD_LABELS),
+            (volume.keeps, layout::FIELD_KEPT),
             (volume.mode == VolumeMode::Gradient, layout::FIELD_STEEP),
             (volume.mode == VolumeMode::Slice, layout::FIELD_SLICE << volume.slice.axis),
         ];

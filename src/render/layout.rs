@@ -413,6 +413,8 @@ pub const FIELD_LABELS: u32 = 4;
 pub const FIELD_STEEP: u32 = 8;
 /// `lib/fields.wgsl`: its surface is a plane across its first axis; the next two bits say across its second and its third.
 pub const FIELD_SLICE: u32 = 16;
+/// `lib/fields.wgsl`: lenses take nothing of it away.
+pub const FIELD_KEPT: u32 = 128;
 
 /// `lib/fields.wgsl`.
 #[repr(C)]

@@ -378,7 +378,14 @@ impl Studio {
             if boxes.is_empty() {
                 boxes = tiles_of(&|_| true);
             }
-            first_view(&self.extent(), &boxes, f64::from(size[0]) / f64::from(size[1]))
+            let mut extent = self.extent();
+            if extent.is_empty() {
+                // Volumes alone; whoever draws tells what is wrong with one.
+                let volumes = self.known().fields.of_scene(&scene.volumes).unwrap_or_default();
+                extent = volumes.bounds();
+                boxes = volumes.0.iter().map(|field| field.bounds()).collect();
+            }
+            first_view(&extent, &boxes, f64::from(size[0]) / f64::from(size[1]))
         })
     }
 

@@ -186,7 +186,7 @@ impl<'a> FramePlan<'a> {
             has_edges: facts.has_edges,
             sections: facts.sections.clone(),
             own_sections: facts.own_sections.clone(),
-            radius: light::radius_of(&facts.bounds),
+            radius: light::radius_of(&if facts.bounds.is_empty() { input.fields.bounds() } else { facts.bounds }),
             fade: facts.fade,
             numbers: LensNumbers::new(input, &seen.volumes, &requests, own_sprites),
             parts: PictureParts::new(&seen.volumes, &plans.looked_at, &plans.filters, input.tile.size),

@@ -67,6 +67,11 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Whether it has neither a city nor a volume to show.
+    pub fn is_empty(&self) -> bool {
+        self.city.files.is_empty() && self.volumes.is_empty()
+    }
+
     /// The time operators of a lens, or of the whole scene, with those of other lenses in place of links; none where links lead nowhere.
     pub fn steps_of(&self, lens: Option<usize>) -> Vec<Handled> {
         let own = lens.map_or(Some(&self.time_steps), |lens| Some(&self.lenses.get(lens)?.time));

@@ -54,6 +54,8 @@ pub struct Volume {
     pub slice: Slice,
     /// Its light.
     pub light: VolumeLight,
+    /// Whether lenses take nothing of it away: what hides, and what makes translucent, leaves it as it is.
+    pub keeps: bool,
     /// Over how many metres the opacity of the transfer holds, > 0; `None`: over the smallest distance of samples.
     pub thickness: Option<f64>,
     /// Steps along rays, shares of the smallest distance of samples, > 0.
@@ -80,6 +82,7 @@ impl Default for Volume {
             level: None,
             slice: Slice::default(),
             light: VolumeLight::None,
+            keeps: false,
             thickness: None,
             step: 1.0,
         }

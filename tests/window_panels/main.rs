@@ -4,6 +4,7 @@ mod lenses;
 mod time_lenses;
 mod timeline;
 mod values;
+mod volumes;
 
 use std::{
     path::PathBuf,

@@ -50,9 +50,9 @@ pub fn tables(ui: &mut Ui, edits: &mut Edits, key: &Key, keys: &'static Table, v
         });
         wrong(ui, edits.drafts, &at);
     }
-    // For a point of interest there is a better way: the one in the example is in no city.
+    // For points of interest and volumes there is a better way: those in the examples are in no city.
     let example = value_of(key.example).and_then(|all| all.as_array().and_then(|all| all.first().cloned()));
-    if let Some(example) = example.filter(|_| key.name != "poi")
+    if let Some(example) = example.filter(|_| !["poi", "volume"].contains(&key.name))
         && ui.small_button(format!("Add {}", keys.name)).on_hover_text(keys.doc).clicked()
     {
         edits.push(format!("{path}.{}", list.len()), To::Value(example));

@@ -143,7 +143,7 @@ pub fn load_raw(
             Err(error) => return Err(error),
         }
     }
-    if builder.model.sources.is_empty() {
+    if builder.model.sources.is_empty() && !paths.is_empty() {
         let folder = paths.first().map(PathBuf::as_path).unwrap_or(Path::new(""));
         let more = if refusals.len() > 1 { format!("; {} more", refusals.len() - 1) } else { String::new() };
         let why = refusals.first().map(|first| format!(" ({first}{more})")).unwrap_or_default();

@@ -214,7 +214,7 @@ pub fn open(
     global: &GlobalArguments,
 ) -> Outcome<(Studio, Vec<serde_json::Value>)> {
     output::keep(outputs, &scene_file::files_of(scene))?;
-    if scene.city.files.is_empty() {
+    if scene.is_empty() {
         return Err(Failure::failed("the scene names no city; [city] files = [\"FILE\"] would be right"));
     }
     let mut roots: Vec<PathBuf> = options.roots.clone();
@@ -251,7 +251,8 @@ pub fn open(
     }
     let mut studio = Studio::new(gpu, Arc::new(model), &scene.city).map_err(Failure::failed)?;
     studio.reading = reading;
-    if let Some(why) = facts::nothing_drawn(&studio.model, &studio.geometries) {
+    let why = facts::nothing_drawn(&studio.model, &studio.geometries);
+    if let Some(why) = why.filter(|_| !scene.city.files.is_empty()) {
         log::warn!("nothing of the city is drawn: {why}");
         warnings.push(serde_json::json!({"code": "nothing-drawn", "count": 1, "objects": [], "message": why}));
     }

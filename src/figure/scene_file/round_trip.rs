@@ -742,6 +742,7 @@ prop_compose! {
             level: (mode == VolumeMode::Isosurface).then_some(numbers[1]),
             slice: if mode == VolumeMode::Slice { Slice { axis: words[1] as u32 % 3, at: numbers[2] / 16.0 } } else { Slice::default() },
             light: VolumeLight::WORDS[words[2] % 3].1,
+            keeps: labels,
             thickness: is_visible.then_some(numbers[3]),
             step: numbers[2],
         }

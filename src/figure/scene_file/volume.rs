@@ -463,6 +463,18 @@ const VOLUME_ROWS: &[Row<Volume>] = &[
     ),
     field!(
         key(
+            "keep",
+            Kind::Boolean,
+            "false",
+            "",
+            "Whether lenses take nothing of it away: what hides and what makes translucent, such as the eraser and x-ray, leaves it as it is, and shows it behind walls.",
+            "true"
+        ),
+        Same,
+        |volume: Volume| volume.keeps
+    ),
+    field!(
+        key(
             "thickness",
             Kind::Number { min: 1e-3, max: FAR_M },
             "the smallest distance of its samples",
