@@ -57,7 +57,7 @@ const FIELD_MEAN: u32 = 5u;
 
 const FIELD_LIT: u32 = 1u;
 const FIELD_SHADOWED: u32 = 2u;
-const FIELD_LABELS: u32 = 4u;       // numbers of things, not to be mixed
+const FIELD_LABELS: u32 = 4u;       // numbers of things that are seen, from 1, not to be mixed; 0: nothing
 const FIELD_STEEP: u32 = 8u;        // seen as far as it changes
 const FIELD_SLICE: u32 = 16u;       // its surface is a plane across its first axis; the next two bits: across its second, its third
 const FIELD_SLICES: u32 = 112u;
@@ -93,14 +93,6 @@ fn on_ramp(number: u32, value: f32) -> vec4f {
     return select(vec4f(a.rgb * (1.0 - share) + b.rgb * share, extinction), vec4f(0.0), value < NO_VALUE);
 }
 
-// Whether labels are seen.
-fn seen_labels(number: u32, labels: vec4f) -> vec4f {
-    let at = clamp(round(labels * fields.each[number].scale * (RAMP_ENTRIES - 1.0)), vec4f(0.0), vec4f(RAMP_ENTRIES - 1.0));
-    let extinctions = vec4f(ramp_entry(number, i32(at.x)).w, ramp_entry(number, i32(at.y)).w, ramp_entry(number, i32(at.z)).w,
-                            ramp_entry(number, i32(at.w)).w);
-    return select(vec4f(0.0), vec4f(1.0), extinctions > vec4f(0.0));
-}
-
 // The eight samples around a place, and how much each has of it.
 struct FieldCorners {
     low: vec3i,
@@ -126,8 +118,8 @@ fn value_of_field(number: u32, place: vec3f) -> f32 {
                       texel_of_field(number, vec3i(low.x, high.yz)), texel_of_field(number, high));
     let is_label = FIELDS_LABELS && (!FIELDS_NUMBERS || (fields.each[number].flags & FIELD_LABELS) != 0u);
     if FIELDS_LABELS && is_label {
-        below = seen_labels(number, below);
-        above = seen_labels(number, above);
+        below = select(vec4f(0.0), vec4f(1.0), below > vec4f(0.0));
+        above = select(vec4f(0.0), vec4f(1.0), above > vec4f(0.0));
     }
     let four = below * (1.0 - near.share.z) + above * near.share.z;
     let two = four.xy * (1.0 - near.share.y) + four.zw * near.share.y;

@@ -165,7 +165,7 @@ pub struct Frame {
     pub shown: Option<(Vec<u32>, Vec<f32>)>,
     /// How lenses bend rays in it.
     pub rays: RayPaths,
-    /// What its volumes show; only of pictures that stand still.
+    /// What its volumes show.
     pub volumes: Vec<ShownVolume>,
     /// Where overlays stand in it; only of pictures that stand still.
     pub overlays: Vec<ShownOverlay>,
@@ -597,7 +597,7 @@ impl Worker {
             let scene = studio.on_ground(&scene)?;
             let picture = figure::draw_next(studio, &scene, &request, standing)?;
             let view = View::new(studio.camera(&scene, size), size, &Aabb::EMPTY)?;
-            let volumes = if still { studio.volumes(&scene)? } else { Vec::new() };
+            let volumes = studio.volumes(&scene)?;
             Ok((picture, view, volumes))
         });
         let (picture, view, volumes) = match drawn {

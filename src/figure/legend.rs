@@ -86,6 +86,8 @@ pub fn legends(
 
 /// Places at which the colours of a transfer function are looked at.
 const TRANSFER_COLORS: usize = 129;
+/// Columns of its opacities.
+const OPACITY_COLUMNS: usize = 33;
 /// What an opacity of 1 is in columns.
 const OPAQUE: f64 = 1000.0;
 
@@ -120,7 +122,7 @@ pub fn volume_legends(scene: &Scene, shown: &[ShownVolume]) -> Vec<Legend> {
             threshold: None,
             relief: 0.0,
             counts: false,
-            histogram: if is_ramp { places(TRANSFER_COLORS).map(opacity).collect() } else { Vec::new() },
+            histogram: if is_ramp { places(OPACITY_COLUMNS).map(opacity).collect() } else { Vec::new() },
         };
         Legend { title: own.title.clone(), unit: own.unit.clone(), lenses: Vec::new(), scale }
     };

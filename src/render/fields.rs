@@ -32,8 +32,6 @@ pub(super) struct FieldData {
     pub brick_ranges: Vec<Option<[f32; 2]>>,
     /// The largest difference of neighbours along each axis.
     steepest: [f32; 3],
-    /// How many labels it has a texel for: values are whole numbers 0 to 255.
-    is_labels: bool,
 }
 
 impl FieldData {
@@ -64,8 +62,7 @@ impl FieldData {
             all[axis] -= 1;
             places(all).map(difference).fold(0.0, f32::max)
         });
-        let is_labels = matches!(values, Values::U8(_)) || has_labels(&values);
-        Self { size, values, range, bricks, brick_ranges, steepest, is_labels }
+        Self { size, values, range, bricks, brick_ranges, steepest }
     }
 }
 
@@ -84,10 +81,21 @@ impl FieldData {
     }
 }
 
-fn has_labels(values: &Values) -> bool {
+/// In place of labels, whole numbers 0 to 255, their places among those that are seen, from 1; 0 for the others. `None`: some are no labels.
+fn seen_labels(values: &Values, seen: &[u8]) -> Option<Vec<u8>> {
+    let mut places = [0_u8; 256];
+    (1..).zip(seen).for_each(|(place, label)| places[usize::from(*label)] = place);
     match values {
-        Values::U8(_) => true,
-        Values::F32(values) => values.iter().all(|v| (0.0..=255.0).contains(v) && v.fract() == 0.0),
+        Values::U8(values) => Some(values.iter().map(|label| places[usize::from(*label)]).collect()),
+        Values::F32(values) => {
+            let place = |value: &f32| match *value {
+                v if (0.0..=255.0).contains(&v) && v.fract() == 0.0 => Some(places[v as usize]),
+                // Where nothing is known there is nothing.
+                v if v.is_nan() => Some(0),
+                _ => None,
+            };
+            values.iter().map(place).collect()
+        }
     }
 }
 
@@ -104,6 +112,8 @@ struct Shown {
     field: Option<String>,
     component: Component,
     time_step: u32,
+    /// Of labels those that are seen; their places in it stand in place of them, from 1.
+    labels: Vec<u8>,
 }
 
 /// What a volume shows, for legends and for those who choose colours.
@@ -264,9 +274,6 @@ impl KnownFields {
             return Err(wrong("time_step", format!("the file has {steps} steps in time, 0 to {}", steps - 1)));
         }
         let data = self.data(volume, own)?;
-        if volume.labels && !data.is_labels {
-            return Err(wrong("labels", "not all values are whole numbers 0 to 255; false would be right".to_owned()));
-        }
         let grid = placed_grid(volume, &own.grid);
         let smallest =
             (0..3).filter(|i| data.size[*i] > 1).map(|i| grid.steps[i].length()).fold(f64::INFINITY, f64::min);
@@ -292,6 +299,11 @@ impl KnownFields {
             field: volume.field.clone(),
             component: volume.component,
             time_step: volume.time_step,
+            labels: if volume.labels {
+                volume.transfer.values.iter().map(|label| *label as u8).collect()
+            } else {
+                Vec::new()
+            },
         };
         if let Some((_, known)) = self.data.iter().find(|(of, _)| *of == shown) {
             return Ok(known.clone());
@@ -303,8 +315,22 @@ impl KnownFields {
                 volume.name, own.name, own.components
             )
         })?;
-        let data = Arc::new(FieldData::new(&own.grid, scalars.values, range));
-        self.data.push((shown, data.clone()));
+        let data = match volume.labels {
+            false => FieldData::new(&own.grid, scalars.values, range),
+            true => {
+                let places = seen_labels(&scalars.values, &shown.labels).ok_or_else(|| {
+                    format!(
+                        "volume \"{}\": labels: not all values are whole numbers 0 to 255; false would be right",
+                        volume.name
+                    )
+                })?;
+                FieldData::new(&own.grid, Values::U8(places), [0.0, shown.labels.len() as f32])
+            }
+        };
+        let data = Arc::new(data);
+        // Those of other labels, and other steps in time, may come again.
+        self.data.truncate(2 * MOST_VOLUMES - 1);
+        self.data.insert(0, (shown, data.clone()));
         Ok(data)
     }
 }

@@ -245,16 +245,14 @@ impl Transfer {
         self.colors.get(index).copied().or_else(of_ramp).unwrap_or_default()
     }
 
-    /// The same of labels: each number has an entry of its own, and those that are not named nothing.
+    /// The same of labels: the first of `values` has entry 1, the next 2, and so on; entry 0 is that of all others, and nothing.
     pub fn label_entries(&self, thickness: f64) -> Vec<[f32; 4]> {
         let mut entries = vec![[0.0; 4]; RAMP_ENTRIES];
-        for (i, label) in self.values.iter().enumerate() {
+        for (i, slot) in entries.iter_mut().skip(1).take(self.values.len()).enumerate() {
             let color = self.label_color(i);
             // Of one opacity all have it.
             let opacity = self.opacity.get(i).or(self.opacity.last()).copied().unwrap_or(0.0);
-            if let Some(slot) = entries.get_mut(label.round().max(0.0) as usize) {
-                *slot = self::entry(color, opacity, thickness);
-            }
+            *slot = self::entry(color, opacity, thickness);
         }
         entries
     }
@@ -312,7 +310,7 @@ mod tests {
         };
         let entries = transfer.label_entries(1.0);
         let seen: Vec<usize> = (0..RAMP_ENTRIES).filter(|i| entries[*i][3] > 0.0).collect();
-        assert_eq!(seen, [3, 7]);
-        assert_eq!(entries[7][..3], [0.0, 1.0, 0.0]);
+        assert_eq!(seen, [1, 2]);
+        assert_eq!(entries[2][..3], [0.0, 1.0, 0.0]);
     }
 }
