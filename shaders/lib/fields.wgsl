@@ -334,7 +334,7 @@ fn lay_surface(number: u32, way: FieldRay, ray: Ray, distance: f32, pixel: vec2i
         own = label_of_field(number, place);
     }
     var gradient = vec3f(0.0);
-    if FIELDS_LIT && (flags & FIELD_LIT) != 0u {
+    if FIELDS_LIT && (flags & FIELD_LIT) != 0u && (flags & FIELD_SLICES) == 0u {
         gradient = gradient_of_field(number, place);
     }
     let look = look_of_field(number, pixel, ray, distance, place, value, own.rgb, gradient, part);
@@ -485,11 +485,7 @@ fn lay_projected(number: u32, pixel: vec2i, middle: vec2f, part: u32, laid: ptr<
     let way = ray_in_field(number, ray, 0.0, FAR_AWAY);
     let place = way.start + distance * way.along;
     let own = on_ramp(number, value);
-    var gradient = vec3f(0.0);
-    if FIELDS_LIT && (fields.each[number].flags & FIELD_LIT) != 0u {
-        gradient = gradient_of_field(number, place);
-    }
-    let look = look_of_field(number, pixel, ray, distance, place, value, own.rgb, gradient, part);
+    let look = look_of_field(number, pixel, ray, distance, place, value, own.rgb, vec3f(0.0), part);
     lay_layer(laid, look.rgb, absorbed(own.w * fields.each[number].thickness) * look.w);
 }
 
@@ -548,4 +544,17 @@ fn is_seen_of_field(number: u32, pixel: vec2i, ray: Ray, distance: f32, part: u3
         return true;
     }
     return look_of_field(number, pixel, ray, distance, vec3f(0.0), 0.0, vec3f(0.0), vec3f(0.0), part).w > 0.0;
+}
+
+// The classes of what is opaque, or of the background, where no layer of the city is the shown surface.
+fn write_classes_of_opaque(pixel: vec2i, middle: vec2f, depth: f32, part: u32) {
+    let is_any = depth > 0.0;
+    see_pixel(middle, select(FAR_AWAY, distance_of_depth(depth), is_any));
+    let ray = ray_of_pixel(middle);
+    if is_any {
+        let point = point_at(pixel, ray, depth);
+        write_classes(pixel, point, classes_at(sight_of_point(point, ray), part));
+    } else {
+        write_classes(pixel, nowhere(pixel), classes_at(sight_at(pixel, ray, 0.0, NO_OBJECT), part));
+    }
 }

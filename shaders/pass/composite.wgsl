@@ -170,6 +170,7 @@ fn composite(in: Corner) -> Composite {
     let head = atomicLoad(&heads[FIRST_HEAD + u32(pixel.y) * u32(view.size.x) + u32(pixel.x)]);
     var color = vec3f(0.0);
     var through = 1.0;
+    var city_through = 1.0;     // of it what the city's layers let through: fields are not among what AOVs tell of
     var shown = vec2u(0u);
     var shown_depth = 0.0;
     var laid = 0u;
@@ -251,10 +252,11 @@ fn composite(in: Corner) -> Composite {
             let paint = shade(&point, classes);
             color += (through * opacity) * paint;
             through *= 1.0 - opacity;
+            city_through *= 1.0 - opacity;
             if PICKS {
                 picked = select(picked, vec4f(paint, -opacity), laid == atomicLoad(&heads[PICKED]));
             }
-            if through <= 0.5 && shown.x == 0u {
+            if city_through <= 0.5 && shown.x == 0u {
                 shown = vec2u(code, normal);
                 shown_depth = depth;
                 write_classes(pixel, point, classes);
@@ -282,6 +284,10 @@ fn composite(in: Corner) -> Composite {
     lay_fields(pixel, in.clip.xy, select(FAR_AWAY, distance_of_depth(opaque_depth), opaque_depth > 0.0), in.part.x, &before);
     color = before.rgb;
     through = before.w;
+    // What fields hide is the shown surface still.
+    if through <= 0.5 && city_through > 0.5 {
+        write_classes_of_opaque(pixel, in.clip.xy, opaque_depth, in.part.x);
+    }
     if TAIL {
         let sum = textureLoad(tail_sums, pixel, 0);
         let rest = textureLoad(tail_through, pixel, 0).x;

@@ -13,7 +13,9 @@ use crate::{
         failure::{Failure, Outcome},
         terminal,
     },
+    field,
     scene::CitySpec,
+    text::one_line,
 };
 
 /// Shows which file loading is at.
@@ -66,6 +68,12 @@ pub fn load_with(
     global: &GlobalArguments,
 ) -> Outcome<(CityModel, LoadStats)> {
     let shown = Shown { line: terminal::Progress::spinning("loading", global) };
+    if let Some(file) = files.iter().find(|file| field::is_field(file)) {
+        let name = one_line(&file.display().to_string());
+        let message =
+            format!("{name}: is a volume, not a city model; in a scene, [[volume]] file = \"{name}\" would be right");
+        return Err(Failure::failed(message));
+    }
     let (city, stats) = load::load_with_stats(files, options, &shown).map_err(Failure::failed)?;
     drop(shown);
     log::info!(

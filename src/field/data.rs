@@ -1,5 +1,7 @@
 //! What is read: named arrays over grids, in steps of time.
 
+use std::path::PathBuf;
+
 use crate::field::grid::Grid;
 
 /// Samples, x fastest, then y, then z; the components of a sample are together.
@@ -46,6 +48,8 @@ pub struct FieldFile {
     pub fields: Vec<Field>,
     /// What was done to make the file readable, one line each.
     pub warnings: Vec<String>,
+    /// Files beside it that were read, too.
+    pub beside: Vec<PathBuf>,
 }
 
 /// What of a vector is looked at.

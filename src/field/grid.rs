@@ -17,7 +17,7 @@ pub struct Grid {
     /// Where the first sample is, in the file's units.
     pub origin: DVec3,
     /// From a sample to the next along each axis, in the file's units; finite, not 0, in no plane, of any handedness. An axis of one sample
-    /// has a step, too: 1 long, at right angles to the others.
+    /// has a step, too: the file's, or one 1 long, at right angles to the others.
     pub steps: [DVec3; 3],
 }
 
@@ -97,8 +97,18 @@ pub(super) fn checked_size(size: [usize; 3]) -> Result<(), String> {
     Ok(())
 }
 
+/// Whether steps are finite, not 0, and in no plane.
+fn spans([a, b, c]: [DVec3; 3]) -> bool {
+    let lengths = a.length() * b.length() * c.length();
+    let span = DMat3::from_cols(a, b, c).determinant().abs();
+    lengths.is_finite() && lengths > 0.0 && span >= LEAST_SPAN * lengths
+}
+
 /// The steps, where an axis of one sample has one of length 1 at right angles to the others.
 fn completed(size: [usize; 3], steps: [DVec3; 3]) -> [DVec3; 3] {
+    if spans(steps) {
+        return steps;
+    }
     let real: Vec<usize> = (0..3).filter(|axis| size[*axis] > 1).collect();
     let (mut all, units) = (steps, [DVec3::X, DVec3::Y, DVec3::Z]);
     match real[..] {

@@ -25,7 +25,7 @@ mod vti;
 mod vtk;
 mod words;
 
-use std::{io, path::Path};
+use std::{cell::RefCell, io, path::Path};
 
 pub use data::{Component, Field, FieldFile, Scalars, Step, Values};
 pub use error::FieldError;
@@ -51,10 +51,21 @@ pub fn is_field(path: &Path) -> bool {
 /// It cannot be read, or is no field: the file, the place and what would be right.
 pub fn load(path: &Path) -> Result<FieldFile, FieldError> {
     if path == Path::new(PLUME) {
-        return Ok(FieldFile { format: "built in", fields: vec![plume(PLUME_SIZE)], warnings: Vec::new() });
+        return Ok(FieldFile {
+            format: "built in",
+            fields: vec![plume(PLUME_SIZE)],
+            warnings: Vec::new(),
+            beside: Vec::new(),
+        });
     }
     let bytes = input::read(path).map_err(|e| FieldError::new(path, format!("cannot be read: {e}")))?;
-    load_bytes(path, &bytes, &input::read)
+    let beside = RefCell::new(Vec::new());
+    let sibling = |path: &Path| {
+        beside.borrow_mut().push(path.to_owned());
+        input::read(path)
+    };
+    let file = load_bytes(path, &bytes, &sibling)?;
+    Ok(FieldFile { beside: beside.into_inner(), ..file })
 }
 
 /// Loads a field file from memory. `path` is for messages, for its extension and for the names of files beside it, which `sibling` reads;

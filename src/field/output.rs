@@ -108,7 +108,7 @@ impl Output {
     pub fn finish(self, format: &'static str) -> Result<FieldFile, String> {
         match self.is_empty() {
             true => Err("has no array of numbers on a grid".into()),
-            false => Ok(FieldFile { format, fields: self.fields, warnings: self.warnings }),
+            false => Ok(FieldFile { format, fields: self.fields, warnings: self.warnings, beside: Vec::new() }),
         }
     }
 }

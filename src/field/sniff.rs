@@ -20,6 +20,16 @@ pub enum Format {
     NetCdf,
 }
 
+/// First bytes of what is no field, and what that is.
+const OTHERS: &[(&[u8], &str)] = &[
+    (b"\x89PNG", "is a PNG image, not a volume"),
+    (b"\xff\xd8\xff", "is a JPEG image, not a volume"),
+    (b"II*\0", "is a TIFF image, not a volume"),
+    (b"MM\0*", "is a TIFF image, not a volume"),
+    (b"glTF", "is a glTF model, not a volume; [city] files would be right"),
+    (b"PK\x03\x04", "is a ZIP archive; unpack it and name the volume inside"),
+];
+
 /// The extensions that such files have, without `.gz`.
 const EXTENSIONS: &[&str] =
     &["nrrd", "nhdr", "mha", "mhd", "vti", "vtk", "dx", "general", "nii", "hdr", "nc", "nc4", "cdf"];
@@ -39,6 +49,12 @@ pub fn format(input: &Input<'_>) -> Result<Format, String> {
     let extension = input.extension();
     if bytes.is_empty() {
         return Err("is empty (0 bytes); is the download complete?".into());
+    }
+    if let Some((_, what)) = OTHERS.iter().find(|(magic, _)| head.starts_with(magic)) {
+        return Err((*what).to_owned());
+    }
+    if head.trim_ascii_start().starts_with(b"{") {
+        return Err("is JSON, as city models are, and no volume; [city] files would be right".to_owned());
     }
     if head.starts_with(nrrd::MAGIC) {
         return Ok(Format::Nrrd);

@@ -117,7 +117,16 @@ pub fn volume_legends(scene: &Scene, shown: &[ShownVolume]) -> Vec<Legend> {
             attribute: own.title.clone(),
             measure: None,
             rule,
-            legend: if is_ramp { Vec::new() } else { transfer.values.iter().enumerate().map(entry).collect() },
+            legend: match is_ramp {
+                true if max > min => Vec::new(),
+                true => vec![LegendEntry {
+                    color: transfer.look(min, own.ends).0,
+                    label: number_text(min, 0.01),
+                    count: 0,
+                    kind: LegendKind::Value,
+                }],
+                false => transfer.values.iter().enumerate().map(entry).collect(),
+            },
             no_data: [0.0; 3],
             threshold: None,
             relief: 0.0,

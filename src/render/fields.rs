@@ -147,6 +147,8 @@ pub const COLUMNS: usize = 128;
 pub(super) struct KnownFields {
     files: Vec<(PathBuf, Arc<FieldFile>)>,
     data: Vec<(Shown, Arc<FieldData>)>,
+    /// The smallest and the largest value of all steps in time.
+    ranges: Vec<(Shown, Option<[f32; 2]>)>,
     /// Counted between the ends of transfer functions.
     histograms: Vec<(Arc<FieldData>, [f64; 2], Vec<u64>)>,
 }
@@ -224,7 +226,12 @@ impl KnownFields {
             let (name, unit, steps) = own.unwrap_or_default();
             Ok(ShownVolume {
                 index,
-                title: volume.label.clone().unwrap_or(name),
+                title: match &volume.label {
+                    Some(label) => label.clone(),
+                    // The name that somebody gave it.
+                    None if volume.name != format!("volume-{index}") => volume.name.clone(),
+                    None => name,
+                },
                 unit: volume.unit.clone().or(unit),
                 ends: field.ends,
                 range: field.data.range.map(f64::from),
@@ -251,6 +258,20 @@ impl KnownFields {
         columns
     }
 
+    /// The files that volumes are read from, those beside headers, too.
+    ///
+    /// # Errors
+    /// One that is none.
+    pub fn files_of(&mut self, volumes: &[Volume]) -> Result<Vec<PathBuf>, String> {
+        let mut files = Vec::new();
+        for volume in volumes.iter().filter(|volume| volume.visible) {
+            let file = self.file(&volume.file).map_err(|error| format!("volume \"{}\": {error}", volume.name))?;
+            files.push(volume.file.clone());
+            files.extend(file.beside.iter().cloned());
+        }
+        Ok(files)
+    }
+
     /// Loads a file, where it is not there yet.
     fn file(&mut self, file: &Path) -> Result<Arc<FieldFile>, String> {
         if let Some((_, known)) = self.files.iter().find(|(of, _)| of == file) {
@@ -271,7 +292,12 @@ impl KnownFields {
             .ok_or_else(|| wrong("field", format!("the file has no such array; it has {}", names())))?;
         let steps = own.steps.len();
         if volume.time_step as usize >= steps {
-            return Err(wrong("time_step", format!("the file has {steps} steps in time, 0 to {}", steps - 1)));
+            let has = if steps == 1 {
+                "one step in time, 0".to_owned()
+            } else {
+                format!("{steps} steps in time, 0 to {}", steps - 1)
+            };
+            return Err(wrong("time_step", format!("the file has {has}")));
         }
         let data = self.data(volume, own)?;
         let grid = placed_grid(volume, &own.grid);
@@ -292,6 +318,19 @@ impl KnownFields {
         Ok(PlacedField { data, grid, entries, ends, volume: volume.clone(), thickness, step })
     }
 
+    /// The smallest and the largest value of all steps in time, so that these can be compared.
+    fn range(&mut self, shown: &Shown, own: &field::Field) -> Option<[f32; 2]> {
+        let of = Shown { time_step: 0, labels: Vec::new(), ..shown.clone() };
+        if let Some((_, range)) = self.ranges.iter().find(|(known, _)| *known == of) {
+            return *range;
+        }
+        let ranges = (0..own.steps.len()).filter_map(|step| own.scalar(step, shown.component).range);
+        let range = ranges.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        self.ranges.truncate(2 * MOST_VOLUMES - 1);
+        self.ranges.insert(0, (of, range));
+        range
+    }
+
     /// The values that are shown.
     fn data(&mut self, volume: &Volume, own: &field::Field) -> Result<Arc<FieldData>, String> {
         let shown = Shown {
@@ -309,11 +348,19 @@ impl KnownFields {
             return Ok(known.clone());
         }
         let scalars = own.scalar(volume.time_step as usize, volume.component);
-        let range = scalars.range.ok_or_else(|| {
-            format!(
-                "volume \"{}\": component: none of its values is known; \"{}\" has {} components",
-                volume.name, own.name, own.components
-            )
+        let range = scalars.range.and_then(|own_range| Some(self.range(&shown, own)?).or(Some(own_range)));
+        let range = range.ok_or_else(|| {
+            let (key, count) = match volume.component {
+                Component::Index(i) if i >= own.components => ("component", own.components),
+                _ => {
+                    return format!(
+                        "volume \"{}\": field: none of the values of \"{}\" is known",
+                        volume.name, own.name
+                    );
+                }
+            };
+            let numbers = if count == 1 { "one component".to_owned() } else { format!("{count} components") };
+            format!("volume \"{}\": {key}: \"{}\" has {numbers}", volume.name, own.name)
         })?;
         let data = match volume.labels {
             false => FieldData::new(&own.grid, scalars.values, range),

@@ -4,6 +4,7 @@ use std::{
     borrow::Cow,
     collections::{BTreeMap, BTreeSet},
     error::Error,
+    path::PathBuf,
     sync::{
         Arc, Mutex, MutexGuard, OnceLock, PoisonError,
         atomic::{AtomicBool, Ordering},
@@ -623,6 +624,14 @@ impl Studio {
     /// A file that is none, or has not what is asked for.
     pub fn volumes(&self, scene: &Scene) -> Result<Vec<ShownVolume>, RenderError> {
         self.known().fields.shown(&scene.volumes).map_err(RenderError::Scene)
+    }
+
+    /// The files that the volumes of a scene are read from, with those that they name.
+    ///
+    /// # Errors
+    /// A file that is none.
+    pub fn volume_files(&self, scene: &Scene) -> Result<Vec<PathBuf>, RenderError> {
+        self.known().fields.files_of(&scene.volumes).map_err(RenderError::Scene)
     }
 
     /// The surroundings that scenes are resolved in.

@@ -8,7 +8,7 @@ use crate::shader::{
         prototype::{EffectKind, Mode, Stage},
     },
     plan::uber::Uber,
-    writer::{as_is, moment_here},
+    writer::{OF_FIELDS, as_is, moment_here},
 };
 
 /// The handlers of the module, with their numbers.
@@ -157,6 +157,11 @@ pub(super) fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     if has(EffectKind::Material) {
         text.push_str("    var material = Material(as_is((*point).base), (*point).emission, vec3f(0.0), 32.0);\n");
         let call = format!("material = invoke_material(material, *point, by{share});\n");
+        let of_fields = used(uber, handlers).find(|(_, h)| h.name == OF_FIELDS).map_or(u32::MAX, |(number, _)| number);
+        let call = match uber.fields {
+            false => call,
+            true => format!("if (*point).surface != NO_SURFACE || by.handler == {of_fields}u {{\n    {call}}}\n"),
+        };
         text.push_str(&each(uber, "MATERIALS", &call));
         text.push_str("    (*point).base = material.base;\n    (*point).emission = vec3f(0.0);\n");
     }

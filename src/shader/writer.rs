@@ -59,7 +59,9 @@ impl Writer<'_> {
 
     /// Whether some surface gets its result from a prototype's optional handler.
     fn needs_optional(&self, kind: EffectKind) -> bool {
-        !self.plan.steps_of(kind, self.handlers).any(|(s, h)| s.scope == Scope::Everywhere && s.replaces(h))
+        // Styles of surfaces leave fields as they are.
+        (self.plan.fields && kind == EffectKind::Scene)
+            || !self.plan.steps_of(kind, self.handlers).any(|(s, h)| s.scope == Scope::Everywhere && s.replaces(h))
     }
 
     fn comment(&self, lens: usize) -> String {
@@ -136,6 +138,9 @@ impl Writer<'_> {
             if self.has(EffectKind::Material) {
                 plus = " + point.highlight";
             }
+        }
+        if handler.kind == EffectKind::Material && self.plan.fields && handler.name != OF_FIELDS {
+            conditions.push("(*point).surface != NO_SURFACE".to_owned());
         }
         if let Some(share) = self.share(step) {
             let laid = match handler.kind {
@@ -279,6 +284,9 @@ impl Writer<'_> {
         }
     }
 }
+
+/// The material that acts on fields; others are of surfaces.
+pub(super) const OF_FIELDS: &str = "transfer";
 
 /// The beginning of `kept_of_field`. `is_cut`: whether anything may take some of a field away.
 pub(super) fn kept_head(is_cut: bool) -> String {

@@ -67,6 +67,7 @@ mod thematic;
 mod tiles;
 mod time;
 mod transparency;
+mod volumes;
 mod warnings;
 mod wrong_input;
 

@@ -74,7 +74,7 @@ fn differences(studio: &mut Studio, scene: &Scene, request: &Request, tile: u32)
 }
 
 /// Scenes of the gallery: every kind of lens, overlays, deformations, filters, sections, sprites, translucent layers, parallel rays.
-const SCENES: [&str; 22] = [
+const SCENES: [&str; 23] = [
     "call-outs",
     "houses-on-the-way",
     "in-the-way",
@@ -97,6 +97,7 @@ const SCENES: [&str; 22] = [
     "trapp-3-3-1-d",
     "trapp-3-5-1",
     "trapp-5-3-3",
+    "carbon-dioxide",
 ];
 
 #[test]

@@ -152,7 +152,7 @@ def read_wind(path):
     assert all(len(row) == 3 for row in rows)
     hidden = lambda v: math.nan if v == -1e9 else v
     wind = [hidden(v) for row in rows for v in row[1:]]
-    steps = [[dx, 0.0, 0.0], [0.0, dy, 0.0], [0.0, 0.0, -1.0]]
+    steps = [[dx, 0.0, 0.0], [0.0, dy, 0.0], [0.0, 0.0, 1.0]]
     place = ([nx, ny, 1], [ox, oy, 0.0], steps)
     return [array("temperature", *place, 1, [[row[0] for row in rows]]), array("wind_velocity", *place, 2, [wind])]
 

@@ -251,6 +251,7 @@ pub fn open(
     }
     let mut studio = Studio::new(gpu, Arc::new(model), &scene.city).map_err(Failure::failed)?;
     studio.reading = reading;
+    output::keep(outputs, &studio.volume_files(scene).map_err(Failure::failed)?)?;
     let why = facts::nothing_drawn(&studio.model, &studio.geometries);
     if let Some(why) = why.filter(|_| !scene.city.files.is_empty()) {
         log::warn!("nothing of the city is drawn: {why}");

@@ -46,7 +46,10 @@ fn places() {
         with("Offset = 1 2 3\nElementSpacing = 2 3 4\nTransformMatrix = 0 1 0 -1 0 0 0 0 1\n", &[0; 6]),
     ))
     .grid;
-    assert_eq!((grid.origin, grid.steps), (DVec3::new(1.0, 2.0, 3.0), [DVec3::Y * 2.0, DVec3::X * -3.0, DVec3::Z]));
+    assert_eq!(
+        (grid.origin, grid.steps),
+        (DVec3::new(1.0, 2.0, 3.0), [DVec3::Y * 2.0, DVec3::X * -3.0, DVec3::Z * 4.0])
+    );
 }
 
 #[test]

@@ -32,7 +32,7 @@ use crate::{
 /// Latest time of a key, seconds.
 const LATEST_S: f64 = 1e6;
 /// What an animation can change, by the first word of the way to it.
-const CHANGED: [&str; 4] = ["lens", "poi", "style", "sun"];
+const CHANGED: [&str; 5] = ["lens", "poi", "style", "sun", "volume"];
 
 const AT: Kind = Kind::Number { min: 0.0, max: LATEST_S };
 const SPEED: Kind = Kind::Word { now: &["keys", "constant"], later: &[] };

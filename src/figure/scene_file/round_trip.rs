@@ -717,6 +717,9 @@ prop_compose! {
             opacity.resize(count, 0.5);
         }
         let mode = VolumeMode::WORDS[words[0]].1;
+        let mixes = matches!(mode, VolumeMode::Maximum | VolumeMode::Minimum | VolumeMode::Average | VolumeMode::Gradient);
+        let mode = if labels && mixes { VolumeMode::XRay } else { mode };
+        let has_light = matches!(mode, VolumeMode::Direct | VolumeMode::Gradient | VolumeMode::Isosurface);
         Volume {
             name: String::new(),
             visible: is_visible,
@@ -741,7 +744,7 @@ prop_compose! {
             mode,
             level: (mode == VolumeMode::Isosurface).then_some(numbers[1]),
             slice: if mode == VolumeMode::Slice { Slice { axis: words[1] as u32 % 3, at: numbers[2] / 16.0 } } else { Slice::default() },
-            light: VolumeLight::WORDS[words[2] % 3].1,
+            light: if has_light { VolumeLight::WORDS[words[2] % 3].1 } else { VolumeLight::None },
             keeps: labels,
             thickness: is_visible.then_some(numbers[3]),
             step: numbers[2],

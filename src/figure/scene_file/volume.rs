@@ -302,7 +302,14 @@ const VOLUME_ROWS: &[Row<Volume>] = &[
         |volume: Volume| volume.field
     ),
     field!(
-        key("label", Kind::Text, "the name of the array", "", "What the legend calls its values.", "\"Temperature\""),
+        key(
+            "label",
+            Kind::Text,
+            "its name, or where it has none that of the array",
+            "",
+            "What the legend calls its values.",
+            "\"Temperature\""
+        ),
         Same,
         |volume: Volume| volume.label
     ),
@@ -542,6 +549,23 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Option<Volume
     if volume.labels && volume.transfer.values.iter().any(|label| label.fract() != 0.0 || !(0.0..=most).contains(label))
     {
         note("transfer", format!("values: labels are whole numbers 0 to {most}"));
+    }
+    // Those that are seen are seen.
+    if volume.labels && volume.transfer.opacity == Transfer::default().opacity {
+        volume.transfer.opacity = vec![1.0];
+    }
+    let mixes =
+        matches!(volume.mode, VolumeMode::Maximum | VolumeMode::Minimum | VolumeMode::Average | VolumeMode::Gradient);
+    if volume.labels && mixes {
+        let message = "does not go with labels, which are not mixed; \"direct\", \"isosurface\", \"x-ray\" or \"slice\" would be right";
+        note("mode", message.to_owned());
+    }
+    let lit = [VolumeMode::Direct, VolumeMode::Gradient, VolumeMode::Isosurface];
+    if volume.light != VolumeLight::None && !lit.contains(&volume.mode) {
+        note("light", "has a meaning only with mode = \"direct\", \"gradient\" or \"isosurface\"".to_owned());
+    }
+    if !volume.labels && !volume.transfer.names.is_empty() {
+        note("transfer", "names: have a meaning only with labels = true".to_owned());
     }
     if volume.level.is_some() && volume.mode != VolumeMode::Isosurface {
         note("level", "has a meaning only with mode = \"isosurface\"".to_owned());

@@ -1,0 +1,176 @@
+//! Volumes as people have them: what is wrong with one is told, what is right is in legends and statistics of files.
+
+use std::{fs, path::Path, process::Command};
+
+use veduta::{
+    figure::{
+        legend::volume_legends,
+        scene_file::{Options, parse},
+    },
+    render::{
+        fields::ShownVolume,
+        frame::Backend,
+        picture::{Aovs, Request, Studio},
+    },
+    scene::Scene,
+};
+
+use crate::studio::{of_scene, volumes::written};
+
+const CITY: &str = "veduta = 1\n[city]\nfiles = [\"builtin:square\"]\n";
+
+fn options() -> Options {
+    Options { allow_outside: true, ..Options::default() }
+}
+
+fn scene(volumes: &str) -> Result<Scene, String> {
+    parse(&format!("{CITY}{volumes}"), "scene.toml", &options()).map_err(|error| error.to_string())
+}
+
+fn message(studio: &mut Studio, volumes: &str) -> String {
+    let drawn = scene(volumes).and_then(|scene| {
+        studio.render(&scene, &Request::plain([16, 9])).map(|_| ()).map_err(|error| error.to_string())
+    });
+    drawn.err().unwrap_or_default()
+}
+
+#[test]
+fn what_is_wrong_with_a_volume_is_told() {
+    let file = written("wrong", [4, 3, 2], |[x, y, z]| (x + y + z) as f32 + 0.5);
+    let picture = file.with_extension("png");
+    fs::write(&picture, b"\x89PNG\r\n\x1a\n....").expect("a file");
+    let truncated = file.with_file_name(format!("truncated-{}.nrrd", std::process::id()));
+    let whole = fs::read(&file).expect("a file");
+    fs::write(&truncated, &whole[..whole.len() - 5]).expect("a file");
+    let of = |rest: &str| format!("[[volume]]\nfile = {file:?}\n{rest}");
+    let five = of("").repeat(5).replace("[[volume]]\n", "[[volume]]\nname = \"NAME\"\n");
+    let five = (0..5).fold(five, |text, i| text.replacen("NAME", &format!("v{i}"), 1));
+    let cases: Vec<(String, &[&str])> = vec![
+        ("[[volume]]\n".to_owned(), &["scene.toml", "file", "missing"]),
+        (of("mode = \"mip\""), &["scene.toml:6", "mode", "\"maximum\""]),
+        (of("spacing = [1, 0, 1]"), &["spacing", "above 0"]),
+        (of("level = 3.0"), &["level", "isosurface"]),
+        (of("slice = { axis = \"x\" }"), &["slice", "mode = \"slice\""]),
+        (of("labels = true"), &["labels", "values = [1, 2]"]),
+        (of("labels = true\ntransfer = { values = [1.5] }"), &["whole numbers"]),
+        (of("transfer = { values = [1, 2, 3], opacity = [0.5, 1.0] }"), &["opacity", "2", "3"]),
+        (of("transfer = { values = [3, 2] }"), &["values", "larger than the one before"]),
+        (of("transfer = { range = [2, 1] }"), &["range", "second larger"]),
+        (of("name = \"a\"\n") + &of("name = \"a\"\n"), &["\"a\" is the name of volume.0"]),
+        (of("field = \"nothing\""), &["field", "no such array", "\""]),
+        (of("time_step = 7"), &["time_step", "one step", "0"]),
+        (of("component = \"z\""), &["component", "one component"]),
+        (of("light = \"lit\"\nmode = \"slice\""), &["light", "isosurface"]),
+        (of("mode = \"average\"\nlabels = true\ntransfer = { values = [1] }"), &["mode", "labels"]),
+        (of("labels = true\ntransfer = { values = [1] }"), &["labels", "whole numbers 0 to 255"]),
+        (five, &["5 volumes", "takes 4"]),
+        (format!("[[volume]]\nfile = {:?}\n", file.with_extension("no")), &["volume-0", "cannot be read"]),
+        (format!("[[volume]]\nfile = {picture:?}\n"), &["volume-0", "wrong", ".png", "PNG"]),
+        (format!("[[volume]]\nfile = {truncated:?}\n"), &["truncated", "bytes"]),
+        (of("[style]\ntransparency = \"weighted\""), &["transparency", "volumes", "\"exact\""]),
+    ];
+    let mut studio = of_scene(&scene("").expect("a city"));
+    let mut wrong = Vec::new();
+    for (text, words) in cases {
+        let told = message(&mut studio, &text);
+        if told.is_empty() || words.iter().any(|word| !told.contains(word)) {
+            wrong.push(format!("{text}told: {told}\nwanted: {words:?}\n"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_eq!(message(&mut studio, &of("")), "");
+}
+
+#[test]
+fn legends_tell_values_and_labels() {
+    let file = written("legend", [5, 4, 3], |[x, y, _]| (x * y) as f32);
+    let text = format!(
+        "[[volume]]\nfile = {file:?}\nlabel = \"Heat\"\nunit = \"K\"\ntransfer = {{ ramp = \"batlow\", opacity = [0.0, 0.5] }}\n\
+         [[volume]]\nname = \"things\"\nfile = {file:?}\nlabels = true\n\
+         transfer = {{ values = [2, 6], names = [\"bone\", \"skin\"], colors = [\"#ff0000\", \"#00ff00\"] }}\n"
+    );
+    let scene = scene(&text).expect("a scene");
+    let studio = of_scene(&scene);
+    let shown = studio.volumes(&scene).expect("both are shown");
+    let ShownVolume { ends, range, size, steps, .. } = &shown[0];
+    assert_eq!((*ends, *range, *size, *steps), ([0.0, 12.0], [0.0, 12.0], [5, 4, 3], 1));
+    assert_eq!(shown[0].histogram.iter().sum::<u64>(), 60);
+    let legends = volume_legends(&scene, &shown);
+    assert_eq!((legends[0].title.as_str(), legends[0].unit.as_deref()), ("Heat", Some("K")));
+    assert_eq!(legends[0].bar(), Some((0.0, 12.0)));
+    let columns = legends[0].columns();
+    assert!(columns[0] == 0.0 && columns.last() == Some(&1.0) && columns.is_sorted(), "{columns:?}");
+    let rows: Vec<(String, [f32; 3])> = legends[1].rows().into_iter().map(|row| (row.label, row.color)).collect();
+    assert_eq!(rows, [("bone".to_owned(), [1.0, 0.0, 0.0]), ("skin".to_owned(), [0.0, 1.0, 0.0])]);
+}
+
+/// A solid block of one colour around the middle of the square.
+fn block(rest: &str) -> String {
+    let file = written("block", [3, 3, 3], |_| 0.5);
+    format!(
+        "[camera]\neye = [0, -120, 70]\ntarget = [0, 0, 10]\n[[volume]]\nfile = {file:?}\norigin = [-20, -20, 0]\nspacing = [20, 20, 15]\n\
+         transfer = {{ colors = [\"#3060c0\", \"#3060c0\"], opacity = [1.0, 1.0], range = [0.0, 1.0] }}\n{rest}"
+    )
+}
+
+#[test]
+fn styles_of_surfaces_leave_volumes_as_they_are() {
+    let mut studio = of_scene(&scene("").expect("a city"));
+    let lens = |effect: &str| {
+        format!(
+            "[[lens]]\nshape = {{ kind = \"sphere\", center = [0, 0, 10], radius = 60 }}\nbody = \"none\"\neffects = [\"{effect}\"]\n"
+        )
+    };
+    let context = |effect: &str| format!("[style]\neffects = [\"{effect}\"]\n");
+    let mut all = vec![String::new(), "[style]\nbase = \"clay\"\n".to_owned()];
+    all.extend(["flat", "clay"].map(context));
+    all.extend(["velvet", "marble", "cel"].map(lens));
+    let size = [64, 36];
+    let mut wanted = None;
+    for rest in all {
+        let scene = scene(&block(&rest)).unwrap_or_else(|error| panic!("{error}"));
+        for backend in [Backend::Specialised, Backend::Uber] {
+            let request =
+                Request { backend, aovs: Aovs { lens_mask: true, ..Aovs::default() }, ..Request::plain(size) };
+            let picture = studio.render(&scene, &request).expect("a picture");
+            let middle = picture.rgba[(size[1] / 2 * size[0] + size[0] / 2) as usize];
+            assert_eq!(middle, *wanted.get_or_insert(middle), "{rest}, {backend:?}");
+            // Masks are of what stands behind it.
+            let without = Scene { volumes: Vec::new(), ..scene.clone() };
+            let plain = studio.render(&without, &request).expect("a picture");
+            assert!(picture.lens_mask == plain.lens_mask, "{rest}, {backend:?}");
+        }
+    }
+    let [r, g, b, _] = wanted.expect("some were drawn");
+    assert!(b > 150 && b > g && g > r, "{wanted:?}");
+}
+
+#[test]
+fn animations_change_volumes() {
+    let text = block(
+        "[animation]\nframes = 3\nfps = 1\n[[animation.change]]\npath = \"volume.volume-0.slice.at\"\n\
+         keys = [{ at = 0.0, value = 0.0 }, { at = 2.0, value = 1.0 }]\n",
+    );
+    let text = text.replace("transfer =", "mode = \"slice\"\ntransfer =");
+    scene(&text).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn what_a_volume_is_read_from_is_kept() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("beside-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a folder");
+    let header = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 4 4 4\nencoding: raw\ndata file: data.png\n\n";
+    let data: Vec<u8> = (0..64).collect();
+    fs::write(folder.join("a.nhdr"), header).expect("a file");
+    fs::write(folder.join("data.png"), &data).expect("a file");
+    fs::write(folder.join("a.toml"), format!("{CITY}[[volume]]\nfile = \"a.nhdr\"\n")).expect("a file");
+    let program = Command::new(env!("CARGO_BIN_EXE_veduta"))
+        .args(["render", "a.toml", "-o", "data.png", "--size", "16x9", "--samples", "1"])
+        .current_dir(&folder)
+        .output()
+        .expect("the program starts");
+    let said = String::from_utf8_lossy(&program.stderr);
+    assert_eq!(program.status.code(), Some(2), "{said}");
+    assert!(said.contains("data.png is read, and would be replaced"), "{said}");
+    assert_eq!(fs::read(folder.join("data.png")).expect("it is there"), data);
+}
