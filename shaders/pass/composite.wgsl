@@ -199,6 +199,7 @@ fn composite(in: Corner) -> Composite {
     if RECORD > 1u && laid > 0u {
         color = vec3f(recorded(record + RECORD_COLOR), recorded(record + RECORD_COLOR + 1u), recorded(record + RECORD_COLOR + 2u));
         through = recorded(record + RECORD_THROUGH);
+        city_through = through;
         shown = vec2u(atomicLoad(&heads[record + RECORD_SHOWN]), atomicLoad(&heads[record + RECORD_SHOWN + 1u]));
         shown_depth = recorded(record + RECORD_SHOWN_DEPTH);
         // The nodes in the list come after it.

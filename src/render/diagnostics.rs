@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// The codes.
-pub const CODES: [&str; 10] = [
+pub const CODES: [&str; 11] = [
     SPRITE_LAYERS,
     OPEN_SHELLS,
     NOT_DERIVED,
@@ -29,6 +29,7 @@ pub const CODES: [&str; 10] = [
     COARSE,
     NO_GLYPH,
     SEEN_TWICE,
+    VOLUME_UNSEEN,
 ];
 
 /// Rays have more intervals than a sprite has layers.
@@ -59,6 +60,9 @@ pub(super) fn not_derived(contents: &SceneContents) -> [BTreeMap<u32, u32>; 3] {
 
 /// A lens that bends rays shows things more than once.
 const SEEN_TWICE: &str = "rays-fold";
+
+/// Nothing is seen of a volume, whatever the eye.
+const VOLUME_UNSEEN: &str = "volume-unseen";
 
 /// Translucent fragments found no room.
 const LAYER_ROOM: &str = "layer-room";
@@ -221,8 +225,13 @@ fn each<'a>(scene: &'a Scene, picture: &'a Picture, of: &Diagnostic) -> Vec<(&'a
 
 /// Diagnostics of no lens: code, count, message.
 fn of_pictures(picture: &Picture) -> impl Iterator<Item = (&'static str, u64, String)> {
-    let found =
-        [(LAYER_ROOM, missing_layers(picture)), (COARSE, coarse(picture)), (NO_GLYPH, boxes(&picture.without_glyph))];
+    let unseen = &picture.unseen_volumes;
+    let found = [
+        (LAYER_ROOM, missing_layers(picture)),
+        (COARSE, coarse(picture)),
+        (NO_GLYPH, boxes(&picture.without_glyph)),
+        (VOLUME_UNSEEN, (!unseen.is_empty()).then(|| (unseen.len() as u64, unseen.join("; ")))),
+    ];
     found.into_iter().filter_map(|(code, found)| found.map(|(count, message)| (code, count, message)))
 }
 

@@ -399,6 +399,7 @@ fn placed_grid(volume: &Volume, own: &Grid) -> Grid {
         None => steps,
         Some(spacing) => [0, 1, 2].map(|i| steps[i].normalize_or(DVec3::AXES[i]) * spacing[i]),
     };
+    let steps = steps.map(|step| volume.rotation * step);
     Grid { size: own.size, origin: volume.origin.unwrap_or(turned(own.origin)), steps }
 }
 
@@ -454,6 +455,27 @@ impl PlacedField {
             }
         };
         self.data.brick_ranges.iter().map(|ends| u8::from(is_seen(ends))).collect()
+    }
+
+    /// Why nothing of it is seen in a city; `None`: something may be.
+    fn unseen(&self, city: &Aabb) -> Option<String> {
+        let bounds = self.bounds();
+        let apart = (bounds.min - city.max).max(city.min - bounds.max).max(DVec3::ZERO).length();
+        if !city.is_empty() && apart > city.size().length() + bounds.size().length() {
+            return Some(format!("stands {apart:.0} m from the city; another origin would be right"));
+        }
+        if self.seen_bricks().contains(&1) {
+            return None;
+        }
+        let [low, high] = self.data.range;
+        Some(match (self.volume.mode, self.volume.labels) {
+            (_, true) => "has none of the labels that are seen".to_owned(),
+            (VolumeMode::Isosurface, _) => {
+                let level = self.volume.level.unwrap_or(0.5 * (self.ends[0] + self.ends[1]));
+                format!("has no surface of {level}: its values are {low} to {high}")
+            }
+            _ => format!("nothing is seen of its values, {low} to {high}: its transfer function gives them no opacity"),
+        })
     }
 
     /// Where its surface, or its slice, is.
@@ -541,6 +563,14 @@ impl PlacedFields {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
+    }
+
+    /// What is to be said of those of which nothing is seen in the city, which is in this box: nothing of their values, or they stand elsewhere.
+    pub fn unseen(&self, city: &Aabb) -> Vec<String> {
+        self.0
+            .iter()
+            .filter_map(|field| Some(format!("volume \"{}\": {}", field.volume.name, field.unseen(city)?)))
+            .collect()
     }
 
     /// What there is among them.

@@ -145,6 +145,8 @@ pub struct Picture {
     pub(super) weakened: BTreeMap<u32, u32>,
     /// By lens the thousandths of what it changes in which it shows things turned round, since the rays that it bends cross.
     pub(super) folded: BTreeMap<u32, u32>,
+    /// What is to be said of volumes of which nothing is seen.
+    pub(super) unseen_volumes: Vec<String>,
     /// What deformations took.
     pub(super) deformed: Option<DeformedFigures>,
     /// How lenses bend rays in it.
@@ -446,6 +448,7 @@ impl Studio {
         picture.not_derived = diagnostics::not_derived(&resolved.contents);
         picture.weakened = resolved.deformations.weakened.clone();
         picture.deformed = self.renderer.deformed_figures();
+        picture.unseen_volumes = resolved.fields.unseen(&self.extent());
         picture.folded = resolved.rays.folds();
         picture.rays = resolved.rays.clone();
         picture.without_glyph = diagnostics::without_glyph(furniture);

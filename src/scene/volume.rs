@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use crate::{
     field::Component,
@@ -42,6 +42,8 @@ pub struct Volume {
     pub origin: Option<DVec3>,
     /// How far its samples are apart along its axes, metres, > 0; `None`: as the file says.
     pub spacing: Option<DVec3>,
+    /// How it is turned about its first sample.
+    pub rotation: DQuat,
     /// Whether the second axis of the file's coordinates is up, not the third.
     pub y_up: bool,
     /// How values look.
@@ -76,6 +78,7 @@ impl Default for Volume {
             labels: false,
             origin: None,
             spacing: None,
+            rotation: DQuat::IDENTITY,
             y_up: false,
             transfer: Transfer::default(),
             mode: VolumeMode::Direct,

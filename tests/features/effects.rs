@@ -85,6 +85,10 @@ fn every_effect_changes_the_inside_and_nothing_else() {
             assert_eq!(changed, 0, "all is there already");
             continue;
         }
+        if effect.name == "transfer" {
+            assert_eq!(changed, 0, "it is of volumes");
+            continue;
+        }
         assert!(changed * 20 > inside, "{} changed {changed} of {inside} pixels", effect.name);
         assert_eq!(picture.statistics.handlers.as_slice(), std::slice::from_ref(&effect.name));
         // What shows after something was hidden may lie elsewhere.

@@ -104,6 +104,30 @@ fn legends_tell_values_and_labels() {
     assert_eq!(rows, [("bone".to_owned(), [1.0, 0.0, 0.0]), ("skin".to_owned(), [0.0, 1.0, 0.0])]);
 }
 
+#[test]
+fn volumes_of_which_nothing_is_seen_are_told_of() {
+    let mut studio = of_scene(&scene("").expect("a city"));
+    let file = written("unseen", [4, 4, 4], |[x, y, z]| (x + y + z) as f32);
+    let mut told = |rest: &str| {
+        let scene = scene(&format!("[[volume]]\nname = \"v\"\nfile = {file:?}\n{rest}"))
+            .unwrap_or_else(|error| panic!("{error}"));
+        let request = Request { statistics: true, ..Request::plain([16, 9]) };
+        let picture = studio.render(&scene, &request).expect("a picture");
+        let warning = picture.statistics.warnings.into_iter().find(|warning| warning["code"] == "volume-unseen");
+        warning.map(|warning| warning["message"].as_str().expect("a message").to_owned())
+    };
+    assert_eq!(told(""), None);
+    assert_eq!(told("mode = \"isosurface\"\nlevel = 4.5\n"), None);
+    let of = |told: Option<String>, words: &str| {
+        let told = told.unwrap_or_default();
+        assert!(told.contains("volume \"v\"") && told.contains(words), "{told}");
+    };
+    of(told("mode = \"isosurface\"\nlevel = 44.5\n"), "no surface of 44.5: its values are 0 to 9");
+    of(told("transfer = { values = [100, 200], opacity = [0.0, 1.0] }\n"), "no opacity");
+    of(told("labels = true\ntransfer = { values = [77] }\n"), "none of the labels");
+    of(told("origin = [1e6, 0, 0]\n"), "m from the city");
+}
+
 /// A solid block of one colour around the middle of the square.
 fn block(rest: &str) -> String {
     let file = written("block", [3, 3, 3], |_| 0.5);

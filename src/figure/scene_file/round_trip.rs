@@ -732,6 +732,7 @@ prop_compose! {
             labels,
             origin,
             spacing: is_ranged.then(|| DVec3::from_slice(&numbers)),
+            rotation: rotation([f64::from(time_step) * 20.0, if y_up { 15.0 } else { 0.0 }, 0.0]),
             y_up,
             transfer: Transfer {
                 ramp: RAMPS[words[2]].to_owned(),

@@ -4,7 +4,7 @@ use crate::{
     field::{Component, PLUME},
     figure::scene_file::{
         check::Fields,
-        forms::{Color, Form, Same, Word, Worded},
+        forms::{Color, Form, Same, Turn, Word, Worded},
         keys::{FAR_M, Kind, RAMPS, Table, key},
         node::{Data, Node},
         paths::Options,
@@ -377,6 +377,18 @@ const VOLUME_ROWS: &[Row<Volume>] = &[
         ),
         Same,
         |volume: Volume| volume.spacing
+    ),
+    field!(
+        key(
+            "rotation_deg",
+            Kind::Angles,
+            "[0, 0, 0]",
+            "degrees",
+            "Turns it about its first sample: yaw counter-clockwise from above, pitch lifts its east, roll about its east.",
+            "[30.0, 0.0, 0.0]"
+        ),
+        Turn,
+        |volume: Volume| volume.rotation
     ),
     Row::<Volume>::new(
         key(
