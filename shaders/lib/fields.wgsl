@@ -358,10 +358,16 @@ fn lay_light(ways: ptr<function, array<FieldRay, 4>>, cell: FieldCell, pixel: ve
     }
 }
 
-// Where the next cell of the walk ends.
+// The shortest way that a walk goes on: far away, steps may be less than f32 tells apart.
+fn least_way(at: f32, step: f32) -> f32 {
+    return max(1e-3 * step, 2.3841858e-7 * at);
+}
+
+// Where the next cell of the walk ends, beyond where it begins.
 fn end_of_cell(at: f32, step: f32, offset: f32) -> f32 {
     let end = (floor(at / step - offset) + 1.0 + offset) * step;
-    return select(end, end + step, end - at < 1e-3 * step);
+    let least = least_way(at, step);
+    return max(select(end, end + step, end - at < least), at + least);
 }
 
 fn offset_of_cells(pixel: vec2i) -> f32 {
@@ -405,7 +411,7 @@ fn walk_fields(pixel: vec2i, ray: Ray, from_distance: f32, until: f32, part: u32
                 if is_walked && at >= span.x {
                     let empty = empty_until(i, ways[i], at);
                     is_any |= empty <= at;
-                    next = min(next, max(empty, at + 1e-3 * step));
+                    next = min(next, max(empty, at + least_way(at, step)));
                 }
             }
             if !is_any {
@@ -508,6 +514,7 @@ fn found_of_field(number: u32, pixel: vec2i, middle: vec2f, opaque: f32, part: u
     var best = vec2f(0.0);
     var is_any = false;
     var sum = vec3f(0.0);       // of values, of distances, each times a length; and that, metres
+    var last = view.near;       // where the last cell begins of which something is seen
     var at = view.near;
     var rounds = 0u;
     while at < opaque && rounds < 32u {
@@ -526,6 +533,7 @@ fn found_of_field(number: u32, pixel: vec2i, middle: vec2f, opaque: f32, part: u
             if value >= NO_VALUE && is_seen_of_field(number, pixel, ray, distance, part) {
                 best = select(best, vec2f(distance, value), is_better);
                 is_any = true;
+                last = from_distance;
                 sum += vec3f(value, distance, 1.0) * ((until - from_distance) * metres);
             }
             from_distance = until;
@@ -535,7 +543,8 @@ fn found_of_field(number: u32, pixel: vec2i, middle: vec2f, opaque: f32, part: u
     }
     let mean = sum.xy / max(sum.z, 1e-30);
     let found = select(best, mean.yx, mode == FIELD_MEAN);
-    return vec3f(found, select(0.0, 1.0, is_any));
+    // The middle of a cell may be its end, in f32: it is before what is opaque.
+    return vec3f(select(found.x, last, found.x >= opaque), found.y, select(0.0, 1.0, is_any));
 }
 
 // Whether lenses leave anything of a field at a place.

@@ -164,7 +164,7 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         return compare::run(arguments, global);
     }
     if volume::are_volumes(&arguments.files) {
-        return volume::run(&arguments.files, arguments.json, global);
+        return volume::run(&arguments.files, arguments.json);
     }
     let spec = spec(&arguments.files, arguments, global)?;
     let (city, _) = load::load_city(&spec, Frames::default(), global)?;

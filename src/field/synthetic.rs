@@ -13,6 +13,8 @@ use crate::field::{
 const BACKGROUND: f64 = 420.0;
 /// How high the field is, where it is 1 long and wide.
 const HEIGHT: f64 = 0.25;
+/// How long and wide it is, in metres, where a scene does not say it: as a town.
+const LENGTH: f64 = 400.0;
 /// The most that noise adds or takes, in ppm.
 const NOISE: f64 = 3.0;
 /// The direction of the wind, 1 long.
@@ -35,7 +37,7 @@ const STACKS: [Stack; 4] = [
 
 /// Carbon dioxide over a city, in ppm: plumes from a few stacks that the wind carries, and smooth noise.
 ///
-/// Its grid is 1 long along x and y and a quarter high; a scene places it. Sizes are brought to 1 to 2048, and all to the most samples of a grid.
+/// Its grid is 400 m long along x and y and 100 m high, and stands on the plane of z = 0 with the origin in its middle. Sizes are brought to 1 to 2048, and all to the most samples of a grid.
 pub fn plume(size: [usize; 3]) -> Field {
     let [nx, ny, nz] = size.map(|n| n.clamp(1, MOST_PER_AXIS));
     let nz = nz.min(MOST_SAMPLES / (nx * ny)).max(1);
@@ -54,7 +56,11 @@ pub fn plume(size: [usize; 3]) -> Field {
     let [dx, dy, dz] = steps;
     Field {
         name: "co2".into(),
-        grid: Grid { size, origin: DVec3::ZERO, steps: [DVec3::X * dx, DVec3::Y * dy, DVec3::Z * dz] },
+        grid: Grid {
+            size,
+            origin: DVec3::new(-0.5, -0.5, 0.0) * LENGTH,
+            steps: [DVec3::X * dx, DVec3::Y * dy, DVec3::Z * dz].map(|step| step * LENGTH),
+        },
         components: 1,
         is_integer: false,
         unit: Some("ppm".into()),
@@ -150,11 +156,12 @@ mod tests {
         let found = field.scalar(0, Component::Magnitude);
         let [min, max] = found.range.unwrap();
         assert!(min >= 416.0 && max > 440.0 && max < 900.0, "{min} to {max}");
-        assert_eq!((field.grid.bounds()[1], found.missing), (DVec3::new(1.0, 1.0, 0.25), 0));
+        assert_eq!(field.grid.bounds(), [DVec3::new(-200.0, -200.0, 0.0), DVec3::new(200.0, 200.0, 100.0)]);
+        assert_eq!(found.missing, 0);
         let bytes = write_nrrd(&field, Packing::Raw);
         let hash =
             bytes.iter().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(*b)).wrapping_mul(0x100_0000_01b3));
-        assert_eq!(hash, 0x4448_af0e_4db0_0d6d, "{hash:#x}");
+        assert_eq!(hash, 0x6d27_64f7_05a4_6da5, "{hash:#x}");
     }
 
     #[test]

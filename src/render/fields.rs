@@ -151,6 +151,8 @@ pub(super) struct KnownFields {
     ranges: Vec<(Shown, Option<[f32; 2]>)>,
     /// Counted between the ends of transfer functions.
     histograms: Vec<(Arc<FieldData>, [f64; 2], Vec<u64>)>,
+    /// Those of the last pictures.
+    placed: Vec<Arc<PlacedField>>,
 }
 
 /// A volume where it stands.
@@ -159,7 +161,9 @@ pub(super) struct PlacedField {
     pub data: Arc<FieldData>,
     /// In the city.
     grid: Grid,
-    pub entries: Vec<[f32; 4]>,
+    entries: Vec<[f32; 4]>,
+    /// 1 for each of its bricks of which something is seen.
+    pub seen: Vec<u8>,
     /// The values at the ends of its ramp.
     ends: [f64; 2],
     volume: Volume,
@@ -191,7 +195,7 @@ pub struct FieldKinds {
 
 /// The volumes of a scene that are shown.
 #[derive(Clone, Debug, Default)]
-pub struct PlacedFields(pub(super) Vec<PlacedField>);
+pub struct PlacedFields(pub(super) Vec<Arc<PlacedField>>);
 
 impl KnownFields {
     /// The volumes of a scene, those that are shown.
@@ -206,6 +210,7 @@ impl KnownFields {
         if !volumes.is_empty() {
             self.files.retain(|(file, _)| volumes.iter().any(|volume| volume.file == *file));
             self.data.retain(|(of, _)| volumes.iter().any(|volume| volume.file == of.file));
+            self.placed.retain(|field| volumes.iter().any(|volume| volume.file == field.volume.file));
             let data = &self.data;
             self.histograms.retain(|(of, ..)| data.iter().any(|(_, own)| Arc::ptr_eq(of, own)));
         }
@@ -219,7 +224,7 @@ impl KnownFields {
     pub fn shown(&mut self, volumes: &[Volume]) -> Result<Vec<ShownVolume>, String> {
         let placed = self.of_scene(volumes)?.0;
         let indices = (0..volumes.len()).filter(|i| volumes[*i].visible);
-        let shown = |(index, field): (usize, PlacedField)| {
+        let shown = |(index, field): (usize, Arc<PlacedField>)| {
             let volume = &volumes[index];
             let file = self.file(&volume.file)?;
             let own = array_of(volume, &file).map(|own| (own.name.clone(), own.unit.clone(), own.steps.len()));
@@ -284,7 +289,18 @@ impl KnownFields {
         Ok(loaded)
     }
 
-    fn placed(&mut self, volume: &Volume) -> Result<PlacedField, String> {
+    /// A volume where it stands: made once.
+    fn placed(&mut self, volume: &Volume) -> Result<Arc<PlacedField>, String> {
+        if let Some(known) = self.placed.iter().find(|field| field.volume == *volume) {
+            return Ok(known.clone());
+        }
+        let field = Arc::new(self.place(volume)?);
+        self.placed.truncate(2 * MOST_VOLUMES - 1);
+        self.placed.insert(0, field.clone());
+        Ok(field)
+    }
+
+    fn place(&mut self, volume: &Volume) -> Result<PlacedField, String> {
         let wrong = |key: &str, message: String| format!("volume \"{}\": {key}: {message}", volume.name);
         let file = self.file(&volume.file).map_err(|error| format!("volume \"{}\": {error}", volume.name))?;
         let names = || file.fields.iter().map(|field| format!("\"{}\"", field.name)).collect::<Vec<_>>().join(", ");
@@ -315,7 +331,9 @@ impl KnownFields {
         };
         let [low, high] = grid.bounds();
         let step = (volume.step * smallest).max(low.distance(high) / MOST_STEPS);
-        Ok(PlacedField { data, grid, entries, ends, volume: volume.clone(), thickness, step })
+        let seen = Vec::new();
+        let field = PlacedField { data, grid, entries, seen, ends, volume: volume.clone(), thickness, step };
+        Ok(PlacedField { seen: field.seen_bricks(), ..field })
     }
 
     /// The smallest and the largest value of all steps in time, so that these can be compared.
@@ -434,7 +452,7 @@ impl PlacedField {
     }
 
     /// The bricks of which something is seen.
-    pub fn seen_bricks(&self) -> Vec<u8> {
+    fn seen_bricks(&self) -> Vec<u8> {
         let [scale, shift] = self.on_ramp();
         let level = self.level();
         let volume = &self.volume;
@@ -464,7 +482,7 @@ impl PlacedField {
         if !city.is_empty() && apart > city.size().length() + bounds.size().length() {
             return Some(format!("stands {apart:.0} m from the city; another origin would be right"));
         }
-        if self.seen_bricks().contains(&1) {
+        if self.seen.contains(&1) {
             return None;
         }
         let [low, high] = self.data.range;
@@ -602,7 +620,7 @@ impl PlacedFields {
         if bent && !self.is_empty() {
             return Some(whole);
         }
-        let of_field = |field: &PlacedField| {
+        let of_field = |field: &Arc<PlacedField>| {
             let [low, high] = field.rectangle(view)?;
             let origin = DVec2::new(tile.origin[0].into(), tile.origin[1].into());
             let size = DVec2::new(tile.size[0].into(), tile.size[1].into());
@@ -617,16 +635,15 @@ impl PlacedFields {
         self.0.iter().filter_map(of_field).reduce(PictureTile::around)
     }
 
-    /// As shaders read them; `firsts` and `texels` of each as [`PlacedField::row`] has them.
-    pub fn uniform(&self, view: &View, firsts: &[[u32; 2]], texels: &[[f64; 2]], jittered: bool) -> layout::FieldTable {
+    /// As shaders read them; `firsts` of each, and `texels` of all, as [`PlacedField::row`] has them.
+    pub fn uniform(&self, view: &View, firsts: &[[u32; 2]], texels: [f64; 2], jittered: bool) -> layout::FieldTable {
         let mut made: layout::FieldTable = bytemuck::Zeroable::zeroed();
         made.count = self.0.len().min(MOST_VOLUMES) as u32;
         made.is_jittered = u32::from(jittered);
         made.step = self.0.iter().map(|field| field.step).fold(f64::INFINITY, f64::min) as f32;
-        for (i, (field, (first, texels))) in self.0.iter().zip(firsts.iter().zip(texels)).take(MOST_VOLUMES).enumerate()
-        {
+        for (i, (field, first)) in self.0.iter().zip(firsts).take(MOST_VOLUMES).enumerate() {
             let ramp = i * RAMP_ENTRIES;
-            made.each[i] = field.row(view, [first[0], first[1], ramp as u32], *texels);
+            made.each[i] = field.row(view, [first[0], first[1], ramp as u32], texels);
             made.ramps[ramp..ramp + RAMP_ENTRIES].copy_from_slice(&field.entries);
         }
         made

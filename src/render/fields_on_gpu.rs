@@ -6,7 +6,7 @@ use crate::{
     field::Values,
     gpu::{Gpu, GpuError},
     render::{
-        fields::{FieldData, PlacedFields},
+        fields::{PlacedField, PlacedFields},
         resource::synced::Synced,
     },
     scene::volume::MOST_VOLUMES,
@@ -29,10 +29,9 @@ pub(super) struct FieldsOnGpu {
     pub values_view: wgpu::TextureView,
     pub bricks_view: wgpu::TextureView,
     pub table: Synced,
-    /// What the texture of values holds, and where each begins in the textures.
-    held: Vec<Arc<FieldData>>,
+    /// What the textures hold, and where each begins in them.
+    held: Vec<Arc<PlacedField>>,
     firsts: Vec<[u32; 2]>,
-    seen: Vec<Vec<u8>>,
 }
 
 fn view_of(texture: &wgpu::Texture) -> wgpu::TextureView {
@@ -65,7 +64,6 @@ impl FieldsOnGpu {
             table: Synced::new(gpu, "fields", wgpu::BufferUsages::UNIFORM)?,
             held: Vec::new(),
             firsts: Vec::new(),
-            seen: Vec::new(),
         })
     }
 
@@ -78,22 +76,22 @@ impl FieldsOnGpu {
             return Ok(false);
         }
         let placed = &fields.0[..fields.0.len().min(MOST_VOLUMES)];
-        let is_same = self.held.len() == placed.len()
-            && self.held.iter().zip(placed).all(|(held, field)| Arc::ptr_eq(held, &field.data));
-        let mut is_stale = false;
-        if !is_same {
-            is_stale |= self.put_values(gpu, placed.iter().map(|field| field.data.clone()).collect())?;
+        let has_all = |is: &dyn Fn(&Arc<PlacedField>, &Arc<PlacedField>) -> bool| {
+            self.held.len() == placed.len() && self.held.iter().zip(placed).all(|(held, field)| is(held, field))
+        };
+        let has_values = has_all(&|held, field| Arc::ptr_eq(&held.data, &field.data));
+        let has_seen = has_values && has_all(&|held, field| Arc::ptr_eq(held, field) || held.seen == field.seen);
+        if !has_values {
+            self.put_values(gpu, placed)?;
         }
-        let seen: Vec<Vec<u8>> = placed.iter().map(|field| field.seen_bricks()).collect();
-        if self.seen != seen {
-            for ((bricks, field), [_, first]) in seen.iter().zip(placed).zip(&self.firsts) {
-                gpu.write_texture_box(&self.bricks, *first, field.data.bricks.map(|n| n as u32), bricks);
+        if !has_seen {
+            for (field, [_, first]) in placed.iter().zip(&self.firsts) {
+                gpu.write_texture_box(&self.bricks, *first, field.data.bricks.map(|n| n as u32), &field.seen);
             }
-            self.seen = seen;
         }
-        let texels = vec![self.texels(); placed.len()];
-        is_stale |= self.table.sync(gpu, &[fields.uniform(view, &self.firsts, &texels, jittered)])?;
-        Ok(is_stale)
+        self.held = placed.to_vec();
+        let is_new = self.table.sync(gpu, &[fields.uniform(view, &self.firsts, self.texels(), jittered)])?;
+        Ok(is_new || !has_values)
     }
 
     /// From texels to values: times the first, plus the second.
@@ -102,17 +100,20 @@ impl FieldsOnGpu {
         [if is_bytes { 255.0 } else { 1.0 }, 0.0]
     }
 
-    fn put_values(&mut self, gpu: &Gpu, data: Vec<Arc<FieldData>>) -> Result<bool, GpuError> {
-        let (size, firsts) = stacked(data.iter().map(|own| own.size));
-        let (brick_size, first_bricks) = stacked(data.iter().map(|own| own.bricks));
-        let format = match data.iter().all(|own| matches!(own.values, Values::U8(_))) {
+    fn put_values(&mut self, gpu: &Gpu, placed: &[Arc<PlacedField>]) -> Result<(), GpuError> {
+        let data = || placed.iter().map(|field| &*field.data);
+        let (size, firsts) = stacked(data().map(|own| own.size));
+        let (brick_size, first_bricks) = stacked(data().map(|own| own.bricks));
+        let format = match data().all(|own| matches!(own.values, Values::U8(_))) {
             true => wgpu::TextureFormat::R8Unorm,
             false => wgpu::TextureFormat::R32Float,
         };
+        // Until all is there it holds nothing.
+        self.held.clear();
         self.values = gpu.texture_3d(VALUES, size, format, ADVICE)?;
         self.bricks = gpu.texture_3d(BRICKS, brick_size, wgpu::TextureFormat::R8Uint, ADVICE)?;
         (self.values_view, self.bricks_view) = (view_of(&self.values), view_of(&self.bricks));
-        for (own, first) in data.iter().zip(&firsts) {
+        for (own, first) in data().zip(&firsts) {
             let size = own.size.map(|n| n as u32);
             match &own.values {
                 Values::U8(values) if format == wgpu::TextureFormat::R8Unorm => {
@@ -126,8 +127,6 @@ impl FieldsOnGpu {
             }
         }
         self.firsts = firsts.into_iter().zip(first_bricks).map(|(a, b)| [a, b]).collect();
-        self.seen = Vec::new();
-        self.held = data;
-        Ok(true)
+        Ok(())
     }
 }

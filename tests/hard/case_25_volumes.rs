@@ -14,9 +14,9 @@ use veduta::{
     },
     scene::{
         BaseStyle, Scene, Style, Volume,
-        volume::{RAMP_ENTRIES, VolumeMode},
+        volume::{RAMP_ENTRIES, Slice, VolumeMode},
     },
-    view::{Camera, View},
+    view::{Camera, Projection, View},
 };
 
 use crate::{
@@ -50,6 +50,30 @@ fn constant(_: DVec3) -> f64 {
 
 fn linear(p: DVec3) -> f64 {
     0.1 + 0.3 * p.x + 0.25 * p.y + 0.3 * p.z
+}
+
+/// A ball, as far as samples tell: its radius is 0.45 of the box.
+fn ball(p: DVec3) -> f64 {
+    (1.0 - p.distance(DVec3::splat(0.5)) / 0.45).max(0.0)
+}
+
+/// What a field is between its samples, linearly.
+fn between_samples(value: fn(DVec3) -> f64, p: DVec3) -> f64 {
+    let cells = DVec3::from_array(GRID.map(|n| (n - 1) as f64));
+    let at = (p * cells).clamp(DVec3::ZERO, cells);
+    let low = at.floor().min(cells - 1.0);
+    let share = at - low;
+    let corner = |i: u32| {
+        let odd = DVec3::new((i & 1).into(), (i >> 1 & 1).into(), (i >> 2).into());
+        let weight = (odd * share + (1.0 - odd) * (1.0 - share)).element_product();
+        // As the file has it.
+        weight * f64::from(value((low + odd) / cells) as f32)
+    };
+    (0..8).map(corner).sum()
+}
+
+fn sampled_ball(p: DVec3) -> f64 {
+    between_samples(ball, p)
 }
 
 /// The box that fields stand in: around the middle of the city, into the ground.
@@ -213,6 +237,8 @@ fn what_a_ray_meets_is_the_integral() {
         known(&studio, "linear", linear, &[0.0, 0.4]),
         // Nothing is seen of half of it: cells begin where something is.
         known(&studio, "half", linear, &[0.0, 0.0, 0.4]),
+        // Bent between its samples, and nothing around it.
+        known(&studio, "ball", sampled_ball, &[0.0, 0.4]),
     ];
     for (f, field) in fields.into_iter().enumerate() {
         for (c, camera) in cameras(&studio).into_iter().enumerate() {
@@ -239,7 +265,9 @@ fn what_a_ray_meets_is_the_integral() {
                 // A ramp bends between its entries: what cells make of that falls with the square of their length.
                 1 => assert!(off[0] < 1e-4 && off[1] < 1e-4 / 8.0 + OF_CELL, "eye {c}: {off:?}"),
                 // And where it begins to rise there is a bend that a cell does not see.
-                _ => assert!(off[0] < 1e-3 && off[1] < 1e-3 / 8.0 + OF_CELL, "eye {c}: {off:?}"),
+                2 => assert!(off[0] < 1e-3 && off[1] < 1e-3 / 8.0 + OF_CELL, "eye {c}: {off:?}"),
+                // As there is at each of its samples.
+                _ => assert!(off[0] < 5e-3 && off[1] < 5e-3 / 8.0 + OF_CELL, "eye {c}: {off:?}"),
             }
         }
     }
@@ -313,13 +341,21 @@ fn projections_and_surfaces_are_those_of_closed_forms() {
     let mut studio = studio::synthetic(40);
     let field = known(&studio, "projected", linear, &[0.0, 0.8]);
     const LEVEL: f64 = 0.55;
-    let modes =
-        [VolumeMode::Maximum, VolumeMode::Minimum, VolumeMode::Average, VolumeMode::Isosurface, VolumeMode::XRay];
+    const PLANE: Slice = Slice { axis: 1, at: 0.3 };
+    let modes = [
+        VolumeMode::Maximum,
+        VolumeMode::Minimum,
+        VolumeMode::Average,
+        VolumeMode::Isosurface,
+        VolumeMode::XRay,
+        VolumeMode::Slice,
+    ];
     for (c, camera) in cameras(&studio).into_iter().enumerate() {
         let eye = Eye::new(&studio, camera);
         for mode in modes {
             let level = (mode == VolumeMode::Isosurface).then_some(LEVEL);
-            let own = Known { volume: Volume { mode, level, step: 0.25, ..field.volume.clone() }, ..field };
+            let own =
+                Known { volume: Volume { mode, level, slice: PLANE, step: 0.25, ..field.volume.clone() }, ..field };
             let scene = scene_with(camera, Vec::new(), &own.volume);
             let (error, count) = compare(&mut studio, &scene, &own, |i, depths, entries| {
                 let of = straight(&eye);
@@ -331,6 +367,25 @@ fn projections_and_surfaces_are_those_of_closed_forms() {
                 let of_value = |value: f64| (-THICKNESS * own.extinction(entries, value)).exp();
                 if low >= high {
                     return Some([0.0, 1.0, 0.0]);
+                }
+                if mode == VolumeMode::Slice {
+                    let [from, along] = [own.share(origin), direction / (own.high - own.low)];
+                    let t = (PLANE.at - from.y) / along.y;
+                    let place = from + t * along;
+                    let sides = [
+                        place.x,
+                        1.0 - place.x,
+                        place.z,
+                        1.0 - place.z,
+                        (t - eye.near) * along.length(),
+                        (until - t) * along.length(),
+                    ];
+                    // One that ends at a side, or at what is opaque, may be seen or not.
+                    if sides.iter().any(|side| side.abs() < 1e-4) {
+                        return None;
+                    }
+                    let through = if sides.iter().all(|side| *side > 0.0) { of_value(linear(place)) } else { 1.0 };
+                    return Some([1.0 - through, through, 0.0]);
                 }
                 let ends = [low, high].map(|t| linear(own.share(origin + t * direction)));
                 let through = match mode {
@@ -355,6 +410,51 @@ fn projections_and_surfaces_are_those_of_closed_forms() {
                 _ => 2e-6,
             };
             assert!(count > 5000 && error < most, "eye {c}, {mode:?}: {count} pixels, off by {error:.1e}");
+        }
+    }
+}
+
+/// Where f32 tells distances apart only by metres, walks with finer steps than these end, and what they lay is right but for where the field begins and
+/// ends.
+#[test]
+fn walks_end_far_from_the_eye() {
+    let mut studio = studio::synthetic(40);
+    let field = known(&studio, "far", constant, &[0.3, 0.3]);
+    let middle = studio.extent().center();
+    let near = Camera::looking(middle + DVec3::new(300.0, -600.0, 500.0), middle, 0.8);
+    let direction = (near.eye - middle).normalize_or(DVec3::X);
+    for distance in [1e5, 1e6, 1e7] {
+        let eye = middle + distance * direction;
+        let camera =
+            Camera { projection: Projection::Orthographic { height_m: 160.0 }, ..Camera::looking(eye, middle, 0.8) };
+        let eye = Eye::new(&studio, camera);
+        // From one distance in f32 to the next.
+        let unit = f64::from((distance as f32).next_up() - distance as f32);
+        for mode in [VolumeMode::Direct, VolumeMode::Maximum] {
+            let own = Known { volume: Volume { mode, step: 0.01, ..field.volume.clone() }, ..field };
+            let scene = scene_with(camera, Vec::new(), &own.volume);
+            let (error, count) = compare(&mut studio, &scene, &own, |i, depths, entries| {
+                let of = straight(&eye);
+                let until = eye.opaque(depths, i, &of)?;
+                let pieces = eye.in_city(&of(eye.sight.place(eye.sight.pixel(i))));
+                let depth = optical_depth(&own, entries, &pieces, eye.near, until, 1.0);
+                let [low, high] = own.span(pieces[0].1, pieces[0].2);
+                let extinction = own.extinction(entries, 0.5);
+                let off = 4.0 * unit * extinction;
+                let through = match mode {
+                    VolumeMode::Maximum if depth > off => (-THICKNESS * extinction).exp(),
+                    // One that ends at a side, or at what is opaque, may be seen or not.
+                    VolumeMode::Maximum if high.min(until) - low > -4.0 * unit => return None,
+                    _ => (-depth).exp(),
+                };
+                Some([1.0 - through, through, if mode == VolumeMode::Maximum { 0.0 } else { off }])
+            });
+            println!("from {distance:.0e} m, {mode:?}: {count} pixels, off by {error:.1e}");
+            // As many cells as there can be where distances are told apart so badly, at most.
+            assert!(
+                count > 4000 && error < 100.0 * OF_CELL,
+                "from {distance:.0e} m, {mode:?}: {count} pixels, off by {error:.1e}"
+            );
         }
     }
 }

@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use crate::{
     cli::{
-        arguments::GlobalArguments,
         failure::{Failure, Outcome},
         output, report,
         terminal::Paint,
@@ -94,7 +93,7 @@ pub fn are_volumes(files: &[PathBuf]) -> bool {
 ///
 /// # Errors
 /// What cannot be read.
-pub fn run(files: &[PathBuf], json: bool, _: &GlobalArguments) -> Outcome {
+pub fn run(files: &[PathBuf], json: bool) -> Outcome {
     let facts = |path: &PathBuf| {
         let file = field::load(path).map_err(|error| Failure::failed(error.to_string()))?;
         Ok(VolumeFacts::new(path, &file))

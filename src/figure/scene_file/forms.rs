@@ -17,6 +17,7 @@ use crate::{
         Background, BaseStyle, PiecePlace, StyleLook, Technique,
         animation::Numbers,
         overlay::{Along, BuiltInFrame, LineEnd, LineKind, Outside, Sizes},
+        volume::{VolumeLight, VolumeMode},
     },
     shader::Clip,
     view::path::Speed,
@@ -256,6 +257,8 @@ words! {
     LineEnd: Self::WORDS;
     Outside: Self::WORDS;
     Reference: Self::WORDS;
+    VolumeMode: Self::WORDS;
+    VolumeLight: Self::WORDS;
     Speed: [("keys", Self::Keys), ("constant", Self::Constant)];
     Clip: Self::ALL.map(|clip| (clip.word(), clip));
 }

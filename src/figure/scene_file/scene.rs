@@ -156,7 +156,7 @@ const SECTIONS: &[Section] = &[
         ),
         holds: Holds::Tables(
             |scene| scene.volumes.len(),
-            |scene, i, options| volume::written(i, &scene.volumes[i], options),
+            |scene, i, options| volume::written(&scene.volumes[i], options),
             |reader, fields, i, scene| put(&mut scene.volumes, i, volume::read(reader, fields, i)),
         ),
     },

@@ -4,7 +4,7 @@ use crate::{
     field::{Component, PLUME},
     figure::scene_file::{
         check::Fields,
-        forms::{Color, Form, Same, Turn, Word, Worded},
+        forms::{Color, Form, Same, Turn, Word},
         keys::{FAR_M, Kind, RAMPS, Table, key},
         node::{Data, Node},
         paths::Options,
@@ -51,26 +51,6 @@ impl Form<u32> for Axis {
         if let Some(axis) = node.text().and_then(|text| AXES.iter().position(|word| *word == text)) {
             *into = axis as u32;
         }
-    }
-}
-
-impl Worded for VolumeMode {
-    fn word(&self) -> &'static str {
-        Self::WORDS.iter().find(|(_, value)| value == self).map_or("", |(word, _)| word)
-    }
-
-    fn of_word(word: &str) -> Option<Self> {
-        Self::WORDS.iter().find(|(own, _)| *own == word).map(|(_, value)| *value)
-    }
-}
-
-impl Worded for VolumeLight {
-    fn word(&self) -> &'static str {
-        Self::WORDS.iter().find(|(_, value)| value == self).map_or("", |(word, _)| word)
-    }
-
-    fn of_word(word: &str) -> Option<Self> {
-        Self::WORDS.iter().find(|(own, _)| *own == word).map(|(_, value)| *value)
     }
 }
 
@@ -541,8 +521,7 @@ fn check_transfer(fields: &Fields, reader: &mut Reader, transfer: &Transfer) {
 }
 
 /// The table of a volume.
-pub fn written(index: usize, volume: &Volume, options: &Options) -> Data {
-    let _ = index;
+pub fn written(volume: &Volume, options: &Options) -> Data {
     row::written(VOLUME_ROWS, volume, &Volume::default(), options)
 }
 
