@@ -38,6 +38,8 @@ struct RayLenses {
     planes: u32,
     events: u32,
     stretch: f32,               // from pixel to pixel rays of these turn at most so many times as far as others; FAR_AWAY: any
+    followed: u32,              // a bit for each lens: whether its rays are followed through triangles,
+    warped: u32,                // or looked up in an image of what the eye sees
     lenses: array<RayLens, 8>,
     along: array<RayEvent, 16>, // nearest first
     knots: array<vec4f, 1024>,  // radius of the lens, of the picture, its derivative
@@ -89,14 +91,18 @@ fn across_of_pixel(pixel: vec2f) -> vec2f {
     return pixel * view.across_from_pixel.xy + view.across_from_pixel.zw;
 }
 
-// Whether lenses may bend the ray of a pixel.
-fn is_bent(pixel: vec2f) -> bool {
+// The lenses that may bend the ray of a pixel, a bit for each.
+fn lenses_over(pixel: vec2f) -> u32 {
     let across = across_of_pixel(pixel);
-    var is_in = false;
+    var over = 0u;
     for (var lens = 0u; lens < RAY_IMAGES + RAY_PLANES; lens++) {
-        is_in |= rim_share(lens, across) < 1.0;
+        over |= select(0u, 1u << lens, rim_share(lens, across) < 1.0);
     }
-    return is_in;
+    return over;
+}
+
+fn is_bent(pixel: vec2f) -> bool {
+    return lenses_over(pixel) != 0u;
 }
 
 // How many times as far as others the rays of the pixels within a reach turn at most, from one to the next.

@@ -17,7 +17,7 @@ struct Followed {
 
 @fragment
 fn follow(@builtin(position) place: vec4f) -> Followed {
-    if !is_bent(place.xy) {
+    if (lenses_over(place.xy) & ray_lenses.followed) == 0u {
         discard;
     }
     let hit = first_of_pixel(place.xy, NO_HIT);

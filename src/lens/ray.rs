@@ -21,6 +21,8 @@ pub struct RayLens {
     pub bend: Bend,
     /// How what it shows is found.
     pub method: RayMethod,
+    /// How finely, > 0: of [`RayMethod::Image`] texels of its image to a pixel, where it magnifies most.
+    pub fineness: f64,
     /// Whether lines that are straight without it are drawn over what it shows.
     pub grid: bool,
 }
@@ -41,6 +43,8 @@ pub enum RayMethod {
     /// Each pixel follows its ray through the triangles.
     #[default]
     Rays,
+    /// Each pixel looks along its ray into an image of what the eye sees without it: what is hidden there is missing.
+    Image,
 }
 
 /// How a lens bends rays.
@@ -125,7 +129,8 @@ impl RayLens {
             outline: RayOutline::Circle,
             mask: None,
             bend,
-            method: RayMethod::Rays,
+            method: RayMethod::default(),
+            fineness: 1.0,
             grid: false,
         }
     }
@@ -255,6 +260,12 @@ impl SampledRadius {
         let whole = integrals[integrals.len() - 1];
         let knot = |(place, integral): (f64, f64)| [place, integral / whole, inverse(place) / whole];
         Self { knots: places.into_iter().zip(integrals).map(knot).collect() }
+    }
+
+    /// How many times as large it shows things where it shows them largest, along or across the radius; at least 1.
+    pub fn magnifies(&self) -> f64 {
+        let least = |[place, shown, slope]: &[f64; 3]| if *place > 0.0 { slope.min(shown / place) } else { *slope };
+        self.knots.iter().map(least).fold(1.0, f64::min).recip()
     }
 
     /// The radius at one of the lens', 0..=1: cubic between knots.

@@ -23,7 +23,7 @@ use crate::{
     geom::{Shape, shape::FlatFigure},
     lens::{
         chosen::Choice,
-        ray::{Bend, Feature, FisheyeProjection, Magnify, RayLens, RayOutline, SampledRadius},
+        ray::{Bend, Feature, FisheyeProjection, Magnify, RayLens, RayMethod, RayOutline, SampledRadius},
         share_field::{self, ShareField},
     },
     view::{Camera, Projection},
@@ -45,6 +45,10 @@ pub struct Rim {
     pub grid: Option<[f32; 3]>,
     /// In place of an outline: how far its places are from a core.
     pub field: Option<Arc<ShareField>>,
+    /// How what is seen within it is found, and how finely.
+    pub method: RayMethod,
+    /// As [`RayLens::fineness`] has it.
+    pub fineness: f64,
 }
 
 impl Rim {
@@ -188,6 +192,8 @@ impl PictureFrame {
             outline: lens.outline,
             grid: None,
             field: None,
+            method: lens.method,
+            fineness: lens.fineness,
         }
     }
 }
@@ -418,6 +424,11 @@ impl PlaneLens {
         let e = if is_parallel { 0.0 } else { self.distance.recip() };
         let z = d.min(self.until) - self.distance;
         z * self.power / (1.0 + z * e)
+    }
+
+    /// How many times as large its core shows things in the end, > 0.
+    pub fn magnifies(&self, is_parallel: bool) -> f64 {
+        (1.0 - self.taken(self.until, is_parallel)).recip()
     }
 
     /// The part of what it changes in which the rays that it bends cross.

@@ -4,7 +4,7 @@ use glam::DVec2;
 
 use crate::{
     lens::{
-        ray::{FisheyeProjection, RayOutline, SAMPLED_KNOTS},
+        ray::{FisheyeProjection, RayMethod, RayOutline, SAMPLED_KNOTS},
         ray_path::{ImageBend, MOST_RAY_LENSES, RayPaths, Rim},
         share_field::ShareField,
     },
@@ -21,7 +21,7 @@ const GRID_LINES: f64 = 8.0;
 const FAR_AWAY: f32 = 1e30;
 
 /// The part of a tile in which a rim lies.
-fn part_of(rim: &Rim, view: &View, tile: PictureTile) -> Option<ScreenBound> {
+pub(super) fn part_of(rim: &Rim, view: &View, tile: PictureTile) -> Option<ScreenBound> {
     let size = DVec2::new(view.size[0].into(), view.size[1].into());
     let half = view.half_extent();
     let center = DVec2::new(0.5 + 0.5 * rim.center.x / half.x, 0.5 - 0.5 * rim.center.y / half.y) * size;
@@ -36,9 +36,20 @@ fn part_of(rim: &Rim, view: &View, tile: PictureTile) -> Option<ScreenBound> {
     ScreenBound::around(ends(-1.0), ends(1.0)).within(tile)
 }
 
-/// The parts of a tile in which rays may be bent.
-pub(super) fn parts(paths: &RayPaths, view: &View, tile: PictureTile) -> Vec<ScreenBound> {
-    paths.rims().filter_map(|rim| part_of(rim, view, tile)).collect()
+/// The part of a tile in which rays may be bent.
+pub(super) fn bound(paths: &RayPaths, view: &View, tile: PictureTile) -> Option<ScreenBound> {
+    paths.rims().filter_map(|rim| part_of(rim, view, tile)).reduce(ScreenBound::with)
+}
+
+/// The parts of a tile, pixels from its first, in which rays may be bent by lenses of these methods; no two have a pixel in common.
+pub(super) fn parts(
+    paths: &RayPaths,
+    view: &View,
+    tile: PictureTile,
+    is_wanted: impl Fn(RayMethod) -> bool,
+) -> Vec<PictureTile> {
+    let rims = paths.rims().filter(|rim| is_wanted(rim.method));
+    PictureTile::apart(rims.filter_map(|rim| part_of(rim, view, tile)).map(|part| part.rectangle()))
 }
 
 /// All of them as the shaders read them.
@@ -83,6 +94,11 @@ pub(super) fn uniform(paths: &RayPaths) -> layout::RayLenses {
             fields += 1;
         }
     }
+    let of_method = |method: RayMethod| {
+        let rims = paths.rims().take(MOST_RAY_LENSES).enumerate();
+        rims.filter(|(_, rim)| rim.method == method).map(|(bit, _)| 1_u32 << bit).sum::<u32>()
+    };
+    (made.followed, made.warped) = (of_method(RayMethod::Rays), of_method(RayMethod::Image));
     made.stretch = paths.stretch().map_or(FAR_AWAY, |stretch| stretch as f32);
     let events = paths.events();
     made.events = events.len().min(made.along.len()) as u32;

@@ -386,9 +386,24 @@ pub struct RayLenses {
     pub planes: u32,
     pub events: u32,
     pub stretch: f32,
+    pub followed: u32,
+    pub warped: u32,
+    pub pad_0: [u32; 2],
     pub lenses: [RayLens; RAY_LENSES],
     pub along: [RayEvent; 2 * RAY_LENSES],
     pub knots: [[f32; 4]; RAY_KNOTS],
+}
+
+/// Images that pixels look into: `pass/ray-warp.wgsl`.
+const RAY_SOURCES: usize = crate::render::ray_sources::MOST_SOURCES;
+
+/// `pass/ray-warp.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct RaySources {
+    pub count: u32,
+    pub pad_0: [u32; 3],
+    pub all: [View; RAY_SOURCES],
 }
 
 /// `lib/fields.wgsl`: what a ray makes of a field.
@@ -685,6 +700,7 @@ mod tests {
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
         let rays = Module::Rays(None, crate::shader::Bends { images: 1, planes: 1 });
+        let warp = Module::RayWarp(crate::shader::Bends { images: 1, planes: 1 });
         let fields = Module::Composite(Program::Specialised(Plan { fields: true, ..Plan::default() }));
         let checks = [
             (
@@ -782,7 +798,11 @@ mod tests {
                 }),
             ),
             (&rays, host!(RayEvent { distance, lens, ends, reserved })),
-            (&rays, host!(RayLenses { images, planes, events, stretch, lenses, along, knots })),
+            (&warp, host!(RaySources { count, pad_0, all })),
+            (
+                &rays,
+                host!(RayLenses { images, planes, events, stretch, followed, warped, pad_0, lenses, along, knots }),
+            ),
             (
                 &rays,
                 host!(RayCity {

@@ -73,6 +73,7 @@ mod plans;
 mod programs;
 mod ray_fields;
 mod ray_meshes;
+mod ray_sources;
 mod refinery;
 mod regions;
 pub mod renderer;

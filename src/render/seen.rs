@@ -73,7 +73,7 @@ pub(super) fn seen_volumes(input: &FrameInput, city: &Aabb, own: SpriteRoom, idl
     let mut seen: Vec<SeenVolume> = Vec::new();
     let (mut words, mut lists, mut counts) = (own.words, 0, own.counts);
     let masks = input.masks && input.sample == 0;
-    let bent = bent::parts(input.rays, &input.view, input.tile).into_iter().reduce(ScreenBound::with);
+    let bent = bent::bound(input.rays, &input.view, input.tile);
     let is_busy = |volume: &LensVolume| idle.binary_search(&volume.lens).is_err();
     for (index, volume) in input.volumes.iter().enumerate().filter(|(_, volume)| is_busy(volume)) {
         // Other classes may be anywhere in the own space of a sprite.

@@ -137,10 +137,7 @@ impl Shared {
     pub fn upload(&mut self, gpu: &Gpu, plan: &FramePlan, cities: &Cities, is_uber: bool) -> Result<(), GpuError> {
         let (input, plans, numbers) = (plan.input, &plan.plans, &plan.numbers);
         let mut stale = false;
-        let (mut regions, mut places) = (numbers.regions.clone(), numbers.places.clone());
         if is_uber {
-            regions.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
-            places.resize(MOST_VOLUMES as usize, bytemuck::Zeroable::zeroed());
             let invokers: &Invokers = plans.invokers();
             stale |= self.invoker_table.sync(gpu, &invokers.table(input.tile.size))?;
             stale |= self.invokers.sync(gpu, invokers.all())?;
@@ -166,8 +163,8 @@ impl Shared {
         }
         stale |= self.cities.sync(gpu, &cities.uniforms(eye, input.operations))?;
         stale |= self.planes.sync(gpu, &numbers.planes)?;
-        stale |= self.sprite_places.sync(gpu, &places)?;
-        stale |= self.lens_regions.sync(gpu, &regions)?;
+        stale |= self.sprite_places.sync(gpu, &of_volumes(&numbers.places, is_uber))?;
+        stale |= self.lens_regions.sync(gpu, &of_volumes(&numbers.regions, is_uber))?;
         stale |= self.parameters.sync(gpu, &parameters(plan, is_uber))?;
         stale |= self.object_values.sync(gpu, &input.operations.object_values)?;
         stale |= self.ray_lenses.sync(gpu, &[bent::uniform(input.rays)])?;
@@ -205,7 +202,6 @@ impl Shared {
     }
 
     fn made_groups(&self, gpu: &Gpu, pipelines: &Pipelines, cities: &Cities, targets: &Targets) -> SharedGroups {
-        let surfaces = || wgpu::BindingResource::TextureView(cities.surfaces());
         let made = |layout: &_, entries: &[(u32, wgpu::BindingResource)]| {
             let layout: &crate::render::resource::bindings::GroupLayout = layout;
             group(gpu, layout.label, &pipelines.layout(layout), entries)
@@ -214,35 +210,44 @@ impl Shared {
             view: made(&VIEW, &[(0, whole(self.view.buffer()))]),
             planes: made(&PLANES, &[(1, whole(self.planes.buffer())), (2, whole(self.solids.buffer()))]),
             shade: made(&SHADE, &self.shading(cities, targets, ShadedTargets::of(targets))),
-            lenses: made(
-                &LENSES,
-                &[
-                    (0, all_of(&targets.sprites)),
-                    (1, whole(self.object_values.buffer())),
-                    (2, whole(self.parameters.buffer())),
-                    (3, whole(self.sprite_places.buffer())),
-                    (4, all_of(&targets.masks)),
-                    (5, whole(self.invoker_table.buffer())),
-                    (6, all_of(&targets.filtered)),
-                    (7, whole(self.lens_regions.buffer())),
-                    (8, whole(self.narrowed.as_ref().unwrap_or(self.tile_lists.buffer()))),
-                    (9, whole(self.invokers.buffer())),
-                    (10, whole(self.sprites.buffer())),
-                    (11, whole(self.ray_lenses.buffer())),
-                    (12, wgpu::BindingResource::TextureView(&self.ray_fields.view)),
-                ],
-            ),
-            cut_city: made(
-                &CUT_CITY,
-                &[
-                    (0, surfaces()),
-                    (1, whole(self.planes.buffer())),
-                    (2, whole(self.solids.buffer())),
-                    (3, one_of::<layout::City>(&self.cities)),
-                    (4, one_of::<layout::City>(&self.cities)),
-                ],
-            ),
+            lenses: made(&LENSES, &self.lenses(targets, &self.sprite_places, &self.lens_regions)),
+            cut_city: made(&CUT_CITY, &self.cut_city(cities, &self.planes)),
         }
+    }
+
+    /// What tells of lenses, where these places of sprites and shapes are told.
+    pub fn lenses<'a>(
+        &'a self,
+        targets: &'a Targets,
+        places: &'a Synced,
+        regions: &'a Synced,
+    ) -> [(u32, wgpu::BindingResource<'a>); 13] {
+        [
+            (0, all_of(&targets.sprites)),
+            (1, whole(self.object_values.buffer())),
+            (2, whole(self.parameters.buffer())),
+            (3, whole(places.buffer())),
+            (4, all_of(&targets.masks)),
+            (5, whole(self.invoker_table.buffer())),
+            (6, all_of(&targets.filtered)),
+            (7, whole(regions.buffer())),
+            (8, whole(self.narrowed.as_ref().unwrap_or(self.tile_lists.buffer()))),
+            (9, whole(self.invokers.buffer())),
+            (10, whole(self.sprites.buffer())),
+            (11, whole(self.ray_lenses.buffer())),
+            (12, wgpu::BindingResource::TextureView(&self.ray_fields.view)),
+        ]
+    }
+
+    /// What tells of a city where something is hidden, by these planes.
+    pub fn cut_city<'a>(&'a self, cities: &Cities<'a>, planes: &'a Synced) -> [(u32, wgpu::BindingResource<'a>); 5] {
+        [
+            (0, wgpu::BindingResource::TextureView(cities.surfaces())),
+            (1, whole(planes.buffer())),
+            (2, whole(self.solids.buffer())),
+            (3, one_of::<layout::City>(&self.cities)),
+            (4, one_of::<layout::City>(&self.cities)),
+        ]
     }
 
     /// What shading binds.
@@ -283,6 +288,15 @@ impl<'a> ShadedTargets<'a> {
         let Targets { codes, depth, colors, emissions, .. } = targets;
         Self { codes: &codes.view, depth: &depth.view, colors: &colors.view, emissions: &emissions.view }
     }
+}
+
+/// What shaders are told of each volume; the uber back end's modules declare it as long as it may be.
+pub(super) fn of_volumes<T: bytemuck::Pod>(each: &[T], is_uber: bool) -> Cow<'_, [T]> {
+    let mut each = Cow::Borrowed(each);
+    if is_uber {
+        each.to_mut().resize(MOST_VOLUMES as usize, T::zeroed());
+    }
+    each
 }
 
 /// The parameters of effects, and of each use of a filter which image is its.

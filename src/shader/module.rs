@@ -16,9 +16,9 @@ use crate::{
             AMBIENT_OCCLUSION, BARE, BENT_EDGES, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS,
             CROSSING, CUT, DEFORM, DEPTH_CODE, FACADE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File,
             GEOMETRY, HELD, HELD_LAYERS, HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED,
-            RAY_GRID, RAY_IMAGES, RAY_LAYERS, RAY_WALK, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE, SHADOW,
-            SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS, STORED_PASS,
-            SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
+            RAY_GRID, RAY_IMAGES, RAY_LAYERS, RAY_WALK, RAY_WARP, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
+            SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS,
+            STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
         lining,
         plan::{Bends, Plan, form::Form, lens_test::LensTest, program::Program},
@@ -51,6 +51,8 @@ pub enum Module {
     Rays(Option<Program>, Bends),
     /// Images of what they meet.
     RayImages(Bends),
+    /// Bent rays, looked up in images of what the eye sees, and how many lenses bend them.
+    RayWarp(Bends),
     /// Deferred shading, and what the lenses make of it.
     Shade(Program),
     /// Edges as lines, and what lenses make of them.
@@ -214,7 +216,7 @@ impl Module {
             | Self::Layers(program, _)
             | Self::RayLayers(program)
             | Self::Lines(program) => program.has().bends,
-            Self::Rays(_, bends) | Self::RayImages(bends) => *bends,
+            Self::Rays(_, bends) | Self::RayImages(bends) | Self::RayWarp(bends) => *bends,
             _ => Bends::default(),
         }
     }
@@ -233,6 +235,7 @@ impl Module {
         let of: &[File] = match self {
             Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, GEOMETRY],
             Self::RayImages(_) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAY_IMAGES],
+            Self::RayWarp(_) => &[VIEW, VIEW_UNIFORM, SURFACE, RAY_WARP],
             Self::Rays(None, _) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAYS],
             Self::Rays(Some(program), _) => return files::of_city(program, &[FACADE, RAY_WALK, RAYS]),
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, FACADE, GEOMETRY]),

@@ -210,14 +210,26 @@ const RAY_ROWS: &[Row<RayLens>] = &[
     field!(
         key(
             "method",
-            Kind::Word { now: &["rays"], later: &["image", "vertices"] },
+            Kind::Word { now: &["rays", "image"], later: &["vertices"] },
             "\"rays\"",
             "",
-            "How what it shows is found: by exact `rays` through the triangles.",
-            "\"rays\"",
+            "How what it shows is found: by exact `rays` through the triangles; or by a look into an `image` of what the eye sees without it, which needs no hierarchy over the city, and where what is hidden is missing.",
+            "\"image\"",
         ),
         Word,
         |lens: RayLens| lens.method
+    ),
+    field!(
+        key(
+            "fineness",
+            Kind::Number { min: 0.1, max: 8.0 },
+            "1",
+            "",
+            "Of a `method` other than rays, how finely: texels of the image to a pixel, along an axis, where the lens magnifies most.",
+            "2.0",
+        ),
+        Same,
+        |lens: RayLens| lens.fineness
     ),
     field!(
         key(

@@ -21,7 +21,9 @@ use crate::{
         color::parse_hex,
         deform::{BORDER, ControlProfile, Step},
         kind::{Deformation, FeatureLens, FisheyeLens, Magnifier, Occlusion, SamplingLens, TimeLens},
-        ray::{Bend, Feature, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate},
+        ray::{
+            Bend, Feature, Fisheye, FisheyeProjection, Magnify, RayLens, RayMethod, RayOutline, Sampling, SamplingRate,
+        },
         rendering::{Case, ROWS, When},
         sprite::{Format, Mapping},
     },
@@ -406,9 +408,10 @@ fn ray_lenses() -> impl Strategy<Value = LensKind> {
     let bend = prop_oneof![magnify, feature, sample, fisheye];
     let mask = prop::option::of("[a-zß]{1,6}[.]png");
     let place = (prop::array::uniform2(0.0..=1.0f64), 0.001..4.0f64, any::<bool>(), any::<bool>(), mask);
-    (bend, place).prop_map(|(bend, (center, radius, is_square, grid, mask))| {
+    let method = prop_oneof![Just(RayMethod::Rays), Just(RayMethod::Image)];
+    (bend, place, method, 0.1..=8.0f64).prop_map(|(bend, (center, radius, is_square, grid, mask), method, fineness)| {
         let outline = if is_square { RayOutline::Square } else { RayOutline::Circle };
-        let mut ray = RayLens { radius, grid, ..RayLens::new(bend) };
+        let mut ray = RayLens { radius, grid, method, fineness, ..RayLens::new(bend) };
         if !matches!(ray.bend, Bend::Feature(_)) {
             (ray.center, ray.outline) = (center.into(), outline);
         }

@@ -11,7 +11,7 @@ use crate::{
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass},
             culling_depth::{self, CullingDepth},
-            opaque::{CutBy, SectionPart, add_cut_keys, add_whole_keys, draw_opaque, visible},
+            opaque::{CutBy, OpaqueEye, SectionPart, add_cut_keys, add_whole_keys, draw_opaque, visible},
         },
         plan::FramePlan,
         programs::Programs,
@@ -121,11 +121,11 @@ impl Pass for Geometry {
         self.drawing.0 += 1;
         board.put(self.drawing);
         let (view, tile) = (&plan.input.view, plan.input.tile);
-        let cut = CutBy::of_picture(frame);
+        let (cut, eye) = (CutBy::of_picture(frame), OpaqueEye::of_picture(frame));
         let hidden = cut.map(|by| by.cut);
         let kept = self.near.take();
         let sections = frame.cities.drawn_sections(&plan.details, hidden);
-        let seen: Vec<Vec<SeenChunk>> = sections.iter().map(|drawn| visible(drawn, frame, hidden)).collect();
+        let seen: Vec<Vec<SeenChunk>> = sections.iter().map(|drawn| visible(drawn, view, hidden)).collect();
         let parts = |keep: &dyn Fn(&DrawnSection, &SeenChunk) -> bool| -> Vec<SectionPart> {
             let zipped = sections.iter().zip(&seen);
             zipped.map(|(drawn, seen)| SectionPart { drawn: *drawn, chunks: chunks_of(drawn, seen, keep) }).collect()
@@ -135,12 +135,12 @@ impl Pass for Geometry {
         let hanging = || sections.iter().zip(&seen).filter(|(drawn, _)| hangs(drawn)).flat_map(|(_, seen)| seen);
         let reach = if plan.settings.culls_hidden { culling_depth::reach(view, hanging()) } else { None };
         let Some(reach) = reach else {
-            draw_opaque(frame, recording, "geometry", &parts(&|_, _| true), cut, true);
+            draw_opaque(frame, recording, &eye, "geometry", &parts(&|_, _| true), cut, true);
             self.near = kept;
             return Ok(());
         };
         let is_near = |drawn: &DrawnSection, s: &SeenChunk| hangs(drawn) && s.distance <= reach;
-        draw_opaque(frame, recording, "geometry", &parts(&is_near), cut, true);
+        draw_opaque(frame, recording, &eye, "geometry", &parts(&is_near), cut, true);
         let mut near = match kept {
             Some(near) if near.fits(&targets.depth.texture) => near,
             _ => CullingDepth::new(gpu, tile.size)?,
@@ -149,7 +149,7 @@ impl Pass for Geometry {
         recording.submit(gpu);
         near.read(gpu)?;
         let rest = parts(&|drawn, s| !is_near(drawn, s) && !near.hides(view, tile, &s.chunk.bounds));
-        draw_opaque(frame, recording, "geometry beyond", &rest, cut, false);
+        draw_opaque(frame, recording, &eye, "geometry beyond", &rest, cut, false);
         self.near = Some(near);
         Ok(())
     }

@@ -17,6 +17,8 @@
 //! sections                and the surface that closes them
 //! bent rays               what lenses that bend rays show, in place of what was drawn there,
 //! images of rays          and its images, where it has some
+//! images of lenses        of lenses that bend pictures: what the eye sees, as finely as they show it,
+//! bent pictures           and what pixels in them find there, in place of what was drawn
 //! clear lens masks        where AOVs or statistics ask for them
 //! layers                  every fragment that is seen through and not behind what is opaque, into the list of its pixel
 //! count layers            where opacity rules ask how many layers the picture has
@@ -71,6 +73,7 @@ pub mod masks;
 pub mod narrow;
 pub mod opaque;
 pub mod picture_pass;
+pub mod ray_warp;
 pub mod rays;
 pub mod reference;
 pub mod resolve;
@@ -191,6 +194,7 @@ table! {
     region_geometry: reference::region_geometry::RegionGeometry,
     sections: sections::Sections,
     rays: rays::Rays,
+    warp: ray_warp::RayWarp,
     masks: masks::ClearMasks,
     layers: layers::ExactLayers,
     slots: transparency::slots::SlotLayers,

@@ -3,7 +3,7 @@
 use crate::{
     render::{
         cities::DrawnSection,
-        city::{Chunk, CityBuffers, Draw as Run, Section, draws_of},
+        city::{Chunk, CityBuffers, Draw as Run, Section, SeenChunk, draws_of},
         city_facts::SectionFacts,
         cut::{Asked, Cut},
         pass::{
@@ -17,9 +17,11 @@ use crate::{
             key::{Draw, Parts, PipelineKey, Stage, depth_test, flag, words},
             layouts::{CITY, CORNERS, CUT_CITY, LENSES, VIEW},
             recording::{Counted, DrawnPass, Recording, Shaded, cleared, cleared_depth, kept, kept_depth},
+            targets::Targets,
         },
     },
     shader::{Module, Program},
+    view::View,
 };
 
 /// Group 0 of the geometry of a region: the view, and the number of the region at a dynamic offset.
@@ -171,13 +173,39 @@ pub fn add_cut_keys(plan: &FramePlan, program: &Program, keys: &mut Keys) {
     keys.add_programs(23, plan.sections.iter().map(key));
 }
 
-/// The chunks of a section that a frame may show, in drawing order.
-pub fn visible<'a>(
-    drawn: &DrawnSection<'a>,
-    frame: &FrameContext,
-    cut: Option<&Cut>,
-) -> Vec<crate::render::city::SeenChunk<'a>> {
-    let view = &frame.plan.input.view;
+/// An eye that opaque triangles are drawn for, and what they are drawn into.
+#[derive(Clone, Copy)]
+pub struct OpaqueEye<'a> {
+    /// What it is called in statistics.
+    pub name: &'static str,
+    pub view: &'a View,
+    /// The view, the lenses, and the city where something is hidden, as shaders read them.
+    pub groups: [&'a wgpu::BindGroup; 3],
+    /// Codes, colours, interpolated depth, shares of own light: those are drawn that the plan asks for.
+    pub targets: [&'a wgpu::TextureView; 4],
+    pub depth: &'a wgpu::TextureView,
+    /// The part of these that it has, pixels, from the first.
+    pub size: [u32; 2],
+}
+
+impl<'a> OpaqueEye<'a> {
+    /// The picture's.
+    pub fn of_picture(frame: &FrameContext<'a>) -> Self {
+        let FrameContext { targets, groups, plan, .. } = *frame;
+        let Targets { codes, colors, own_depth, emissions, depth, .. } = targets;
+        Self {
+            name: "main",
+            view: &plan.input.view,
+            groups: [&groups.view, &groups.lenses, &groups.cut_city],
+            targets: [codes, colors, own_depth, emissions].map(|target| &target.view),
+            depth: &depth.view,
+            size: plan.input.tile.size,
+        }
+    }
+}
+
+/// The chunks of a section that an eye may see, in drawing order.
+pub fn visible<'a>(drawn: &DrawnSection<'a>, view: &View, cut: Option<&Cut>) -> Vec<SeenChunk<'a>> {
     let shown = drawn.chunks.iter().filter(|c| drawn.shows(c, cut, view));
     CityBuffers::visible(shown, &view.frustum(1.0), view.camera.eye)
 }
@@ -201,61 +229,71 @@ pub fn set_section(frame: &FrameContext, pass: &mut wgpu::RenderPass, drawn: &Dr
     }
 }
 
-/// Draws parts of the city into the targets, cleared before where they are the `first`.
+/// Draws parts of the city for an eye, into targets that are cleared before where they are the `first`.
 pub fn draw_opaque(
     frame: &FrameContext,
     recording: &mut Recording,
+    eye: &OpaqueEye,
     name: &'static str,
     parts: &[SectionPart],
     cut: Option<CutBy>,
     is_first: bool,
 ) {
-    let FrameContext { targets, groups, plan, .. } = *frame;
-    let input = plan.input;
+    let plan = frame.plan;
+    let [codes, bases, own_depth, emissions] = eye.targets;
     let shown = in_order([
-        Some(&targets.codes),
-        plan.colored.then_some(&targets.colors),
-        input.measured.then_some(&targets.own_depth),
+        Some(codes),
+        plan.colored.then_some(bases),
+        plan.input.measured.then_some(own_depth),
         None,
-        plan.texels_emit.then_some(&targets.emissions),
+        plan.texels_emit.then_some(emissions),
     ]);
     let attachment = |view| if is_first { cleared(view, wgpu::Color::TRANSPARENT) } else { kept(view) };
-    let colors: Vec<_> = shown.into_iter().map(|target| target.map(|target| attachment(&target.view))).collect();
-    let depth = &targets.depth.view;
+    let colors: Vec<_> = shown.into_iter().map(|target| target.map(attachment)).collect();
+    let depth = eye.depth;
     let pass = DrawnPass {
         name,
-        view: "main",
+        view: eye.name,
         lenses: cut.map_or(&[][..], |by| &by.cut.hiding.lenses),
         shaded: Shaded::Counted,
         colors: &colors,
         depth: Some(if is_first { cleared_depth(depth, 0.0) } else { kept_depth(depth) }),
     };
     recording.draw(pass, |pass| {
-        pass.set_bind_group(0, &groups.view, &[]);
+        let [width, height] = eye.size;
+        pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);
+        pass.set_bind_group(0, eye.groups[0], &[]);
         let mut counted = Counted::NONE;
         for part in parts.iter().filter(|part| !part.chunks.is_empty()) {
             set_section(frame, pass, &part.drawn, plan.holds_depth(&part.drawn.facts()));
-            counted += draw_part(frame, pass, part, cut);
+            counted += draw_part(frame, pass, eye, part, cut);
         }
         counted
     });
 }
 
 /// Draws what a part has, what is cut and what is not each by its pipeline.
-fn draw_part(frame: &FrameContext, pass: &mut wgpu::RenderPass, part: &SectionPart, by: Option<CutBy>) -> Counted {
-    let FrameContext { groups, plan, .. } = *frame;
+fn draw_part(
+    frame: &FrameContext,
+    pass: &mut wgpu::RenderPass,
+    eye: &OpaqueEye,
+    part: &SectionPart,
+    by: Option<CutBy>,
+) -> Counted {
+    let plan = frame.plan;
+    let [_, lenses, cut_city] = eye.groups;
     let DrawnSection { city, content, offset, .. } = part.drawn;
     let facts = part.drawn.facts();
     let mut counted = Counted::NONE;
     let asked = Asked { is_content: content.is_some(), keeps_order: part.drawn.section.kind.is_layer() };
-    for (ranges, is_cut) in Cut::parts(by.map(|by| by.cut), &plan.input.view, &part.chunks, asked) {
+    for (ranges, is_cut) in Cut::parts(by.map(|by| by.cut), eye.view, &part.chunks, asked) {
         let (runs, triangles) = draws_of(ranges.into_iter());
         let program = by.filter(|_| is_cut).map(|by| by.program.clone());
         if program.is_some() {
-            pass.set_bind_group(2, &groups.lenses, &[]);
+            pass.set_bind_group(2, lenses, &[]);
         }
         match program.is_some() {
-            true => pass.set_bind_group(1, &groups.cut_city, &[offset; 2]),
+            true => pass.set_bind_group(1, cut_city, &[offset; 2]),
             false => pass.set_bind_group(1, &city.group, &[]),
         }
         let key = GeometryKey::new(plan, &facts, program);

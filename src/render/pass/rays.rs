@@ -4,6 +4,7 @@ use wgpu::ShaderStages as S;
 
 use crate::{
     gpu::{Gpu, GpuError},
+    lens::ray::RayMethod,
     render::{
         bent,
         city_facts::SectionFacts,
@@ -136,6 +137,15 @@ impl PipelineKey for RayImageKey {
     }
 }
 
+/// Where rays are followed.
+#[derive(Clone, Debug)]
+pub struct Where {
+    /// To what is opaque, in lenses that find it so.
+    opaque: Vec<PictureTile>,
+    /// To all that is translucent, whatever the lens: images do not show it.
+    layers: Vec<PictureTile>,
+}
+
 /// Where rays are bent, and what they are followed through: for passes that follow them, too.
 #[derive(Clone, Debug)]
 pub struct Followed {
@@ -222,8 +232,7 @@ impl Kept {
 }
 
 impl Pass for Rays {
-    /// Where in the picture.
-    type Input<'a> = Vec<PictureTile>;
+    type Input<'a> = Where;
 
     const LIST: &'static [Line] = &[
         ("bent rays", "what lenses that bend rays show, in place of what was drawn there,"),
@@ -234,20 +243,21 @@ impl Pass for Rays {
         Ok(Self(None))
     }
 
-    fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<Vec<PictureTile>> {
+    fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<Where> {
         let input = plan.input;
-        let parts = bent::parts(input.rays, &input.view, input.tile);
-        let is_asked = !parts.is_empty() && input.technique == Technique::Accumulate;
-        // A pixel of several lenses is followed once.
-        is_asked.then(|| PictureTile::apart(parts.iter().map(|part| part.rectangle())))
+        let parts = |is_wanted: &dyn Fn(RayMethod) -> bool| bent::parts(input.rays, &input.view, input.tile, is_wanted);
+        let opaque = parts(&|method| method == RayMethod::Rays);
+        let layers = if plan.plans.layering.is_some() { parts(&|_| true) } else { Vec::new() };
+        let is_asked = input.technique == Technique::Accumulate && !(opaque.is_empty() && layers.is_empty());
+        is_asked.then_some(Where { opaque, layers })
     }
 
-    fn add_needs(_: &Vec<PictureTile>, plan: &FramePlan, needs: &mut Needs) {
-        needs.ray_hits |= has_images(plan);
+    fn add_needs(parts: &Where, plan: &FramePlan, needs: &mut Needs) {
+        needs.ray_hits |= !parts.opaque.is_empty() && has_images(plan);
     }
 
-    fn add_keys(&self, input: Option<&Vec<PictureTile>>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
-        if input.is_some() {
+    fn add_keys(&self, input: Option<&Where>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
+        if input.is_some_and(|parts| !parts.opaque.is_empty()) {
             keys.add_programs(24, [RayKey::new(plan, programs)]);
             if has_images(plan) {
                 let emits = [false, true].into_iter().filter(|emits| !emits || plan.texels_emit);
@@ -256,7 +266,7 @@ impl Pass for Rays {
         }
     }
 
-    fn prepare(&mut self, _: &Vec<PictureTile>, stage: &mut Preparing) -> Result<(), GpuError> {
+    fn prepare(&mut self, _: &Where, stage: &mut Preparing) -> Result<(), GpuError> {
         let mut kept = match self.0.take() {
             Some(kept) => kept,
             None => Kept::new(stage)?,
@@ -274,13 +284,16 @@ impl Pass for Rays {
 
     fn record(
         &mut self,
-        parts: &Vec<PictureTile>,
+        Where { opaque: parts, layers }: &Where,
         frame: &FrameContext,
         recording: &mut Recording,
         board: &mut Board,
     ) -> Result<(), GpuError> {
         let Some(kept) = &self.0 else { return Ok(()) };
-        board.put(Followed { parts: parts.clone(), group: kept.group.clone() });
+        board.put(Followed { parts: layers.clone(), group: kept.group.clone() });
+        if parts.is_empty() {
+            return Ok(());
+        }
         let FrameContext { targets, groups, plan, .. } = *frame;
         let targeted = in_order([
             Some(&targets.codes),

@@ -172,7 +172,7 @@ impl RoundDraw<'_> {
             let mut counted = Counted::NONE;
             self.set(frame, pass, &self.keys[1]);
             for drawn in sections {
-                let seen = visible(drawn, frame, Some(self.by.cut));
+                let seen = visible(drawn, &frame.plan.input.view, Some(self.by.cut));
                 let touches = |c: &&Chunk| self.round.reach.touches(&c.bounds, &frame.plan.input.view);
                 let chunks: Vec<&Chunk> = seen.iter().map(|s| s.chunk).filter(touches).collect();
                 if chunks.is_empty() {

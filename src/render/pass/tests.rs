@@ -9,7 +9,7 @@ use crate::{
     geom::{Aabb, Shape},
     lens::{
         Class, EffectUse, Lens, LensKind, LensSprite,
-        ray::{Bend, Magnify, RayLens},
+        ray::{Bend, Magnify, RayLens, RayMethod},
         ray_path::{PictureFrame, RayPaths, Scenery},
     },
     render::{
@@ -248,6 +248,8 @@ fn lenses_that_bend_rays_call_for_a_pass_where_they_are_seen_and_bend_any() {
     let lens = RayLens::magnifier();
     assert_eq!(passes(&lens), ["geometry", "bent rays", "shade"]);
     assert_eq!(passes(&RayLens::fisheye()), ["geometry", "bent rays", "shade"]);
+    let image = RayLens { method: RayMethod::Image, ..lens.clone() };
+    assert_eq!(passes(&image), ["geometry", "images of lenses", "shade"], "no ray is followed");
     assert_eq!(passes(&RayLens { radius: 0.0, ..lens.clone() }), ["geometry", "shade"]);
     assert_eq!(
         passes(&RayLens { center: DVec2::splat(3.0), ..lens.clone() }),

@@ -33,7 +33,7 @@ pub fn draw_translucent<K: PipelineKey>(
         sections.reverse();
     }
     for drawn in sections {
-        let seen = visible(&drawn, frame, Some(cut));
+        let seen = visible(&drawn, &frame.plan.input.view, Some(cut));
         let facts = drawn.facts();
         let holds_depth = can_hold && frame.plan.holds_depth(&facts);
         let (all, some): (Vec<&Chunk>, Vec<&Chunk>) = seen

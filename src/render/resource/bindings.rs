@@ -55,6 +55,8 @@ pub const VOXELS: B = image(wgpu::TextureSampleType::Float { filterable: false }
 pub const VOXEL_NUMBERS: B = image(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D3);
 /// Depth.
 pub const DEPTHS: B = image(wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2);
+/// The same in layers.
+pub const LAYERED_DEPTHS: B = image(wgpu::TextureSampleType::Depth, wgpu::TextureViewDimension::D2Array);
 /// Whole numbers.
 pub const NUMBERS: B = image(wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2);
 /// The same in layers.

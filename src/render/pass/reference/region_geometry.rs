@@ -8,8 +8,8 @@ use crate::{
         pass::{
             context::{Board, FrameContext, Keys, Line, Pass, Preparing},
             opaque::{
-                GeometryKey, REGION, SectionPart, add_cut_keys, add_whole_keys, draw_corners, draw_opaque, in_order,
-                set_section, visible,
+                GeometryKey, OpaqueEye, REGION, SectionPart, add_cut_keys, add_whole_keys, draw_corners, draw_opaque,
+                in_order, set_section, visible,
             },
         },
         plan::FramePlan,
@@ -46,7 +46,7 @@ impl RegionGeometry {
         let input = frame.plan.input;
         let [mut apart, mut reached] = [Vec::new(), Vec::new()];
         for drawn in frame.cities.drawn_sections(&frame.plan.details, None) {
-            let seen = visible(&drawn, frame, None);
+            let seen = visible(&drawn, &frame.plan.input.view, None);
             // Layers of coplanar faces stay together: the later one wins where depths are equal.
             let is_layer = drawn.section.kind.is_layer();
             let is_reached = |chunk: &&Chunk| is_layer || regions.is_reached(&chunk.bounds, input);
@@ -159,7 +159,7 @@ impl Pass for RegionGeometry {
     ) -> Result<(), GpuError> {
         let Some(own) = &self.0 else { return Ok(()) };
         let [apart, reached] = Self::parts(frame, regions);
-        draw_opaque(frame, recording, "geometry", &apart, None, true);
+        draw_opaque(frame, recording, &OpaqueEye::of_picture(frame), "geometry", &apart, None, true);
         let entries = [(0, whole(frame.shared.view.buffer())), (1, one_of::<[u32; 4]>(&own.numbers))];
         let map = own.map.create_view(&Default::default());
         let draw = RegionDraw {
