@@ -39,7 +39,8 @@ struct RayLenses {
     events: u32,
     stretch: f32,               // from pixel to pixel rays of these turn at most so many times as far as others; FAR_AWAY: any
     followed: u32,              // a bit for each lens: whether its rays are followed through triangles,
-    warped: u32,                // or looked up in an image of what the eye sees
+    warped: u32,                // or looked up in an image of what the eye sees,
+    moved: u32,                 // or triangles' corners are where it shows them
     lenses: array<RayLens, 8>,
     along: array<RayEvent, 16>, // nearest first
     knots: array<vec4f, 1024>,  // radius of the lens, of the picture, its derivative

@@ -41,7 +41,7 @@ fn imaged(in: Imaged) -> Looks {
     let pixel = vec2i(in.at.xy);
     let found = textureLoad(ray_hits, pixel, 0).xy;
     let hit = Hit(distance_of_depth(textureLoad(ray_depth, pixel, 0)), max(found.x, 1u) - 1u, found.y, vec2f(0.0));
-    if (lenses_over(in.at.xy) & ray_lenses.followed) == 0u || found.x == 0u || section_of(hit) != in.section {
+    if (lenses_over(in.at.xy) & (ray_lenses.followed | ray_lenses.moved)) == 0u || found.x == 0u || section_of(hit) != in.section {
         discard;
     }
     let kind = ray_words[hit.triangle + 1u].w;

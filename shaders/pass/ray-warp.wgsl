@@ -5,9 +5,11 @@
 
 override SMOOTH: bool = false;      // whether some faces of the picture have a normal per vertex
 
-// Places of a ray that are looked at while a lens bends it, and how often the step in which it meets something is halved.
-const STEPS: u32 = 24u;
-const HALVINGS: u32 = 6u;
+// Texels between two places of a ray that are looked at while a lens bends it, and how many there are at most; how often the step in which it meets
+// something is halved.
+const STEP_TEXELS: f32 = 4.0;
+const MOST_STEPS: f32 = 48.0;
+const HALVINGS: u32 = 5u;
 
 struct RaySources {
     count: u32,
@@ -81,24 +83,29 @@ fn meeting_of(across: vec2f) -> Meeting {
     if shown_at(path.ray, first) <= first {
         return Meeting(path.ray, first);
     }
+    let goes = source_of(point_at(bent_ray(across, last), last)).at - source_of(point_at(path.ray, first)).at;
+    let steps = clamp(ceil(length(goes) / STEP_TEXELS), 1.0, MOST_STEPS);
     var before = first;
     var behind = last;
     var is_met = false;
-    for (var i = 1u; i <= STEPS; i++) {
-        let share = f32(i) / f32(STEPS);
+    for (var i = 1.0; i <= steps; i += 1.0) {
+        let share = i / steps;
         // In perspective equal steps in the picture.
         let t = select(1.0 / mix(1.0 / first, 1.0 / last, share), mix(first, last, share), is_flat);
-        if !is_met && shown_at(bent_ray(across, t), t) <= t {
+        if shown_at(bent_ray(across, t), t) <= t {
             behind = t;
             is_met = true;
+            break;
         }
-        before = select(t, before, is_met);
+        before = t;
     }
-    for (var i = 0u; i < HALVINGS; i++) {
-        let middle = 0.5 * (before + behind);
-        let is_behind = is_met && shown_at(bent_ray(across, middle), middle) <= middle;
-        behind = select(behind, middle, is_behind);
-        before = select(middle, before, is_behind || !is_met);
+    if is_met {
+        for (var i = 0u; i < HALVINGS; i++) {
+            let middle = 0.5 * (before + behind);
+            let is_behind = shown_at(bent_ray(across, middle), middle) <= middle;
+            behind = select(behind, middle, is_behind);
+            before = select(middle, before, is_behind);
+        }
     }
     return Meeting(bent_ray(across, behind), behind);
 }

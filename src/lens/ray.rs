@@ -21,7 +21,8 @@ pub struct RayLens {
     pub bend: Bend,
     /// How what it shows is found.
     pub method: RayMethod,
-    /// How finely, > 0: of [`RayMethod::Image`] texels of its image to a pixel, where it magnifies most.
+    /// How finely, > 0: of [`RayMethod::Image`] texels of its image to a pixel, where it magnifies most; of [`RayMethod::Vertices`] how many
+    /// times shorter sides of triangles are than where nothing is said.
     pub fineness: f64,
     /// Whether lines that are straight without it are drawn over what it shows.
     pub grid: bool,
@@ -45,6 +46,8 @@ pub enum RayMethod {
     Rays,
     /// Each pixel looks along its ray into an image of what the eye sees without it: what is hidden there is missing.
     Image,
+    /// The triangles are cut into smaller ones, whose corners are put where it shows them; their sides are straight.
+    Vertices,
 }
 
 /// How a lens bends rays.

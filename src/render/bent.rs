@@ -99,6 +99,7 @@ pub(super) fn uniform(paths: &RayPaths) -> layout::RayLenses {
         rims.filter(|(_, rim)| rim.method == method).map(|(bit, _)| 1_u32 << bit).sum::<u32>()
     };
     (made.followed, made.warped) = (of_method(RayMethod::Rays), of_method(RayMethod::Image));
+    made.moved = of_method(RayMethod::Vertices);
     made.stretch = paths.stretch().map_or(FAR_AWAY, |stretch| stretch as f32);
     let events = paths.events();
     made.events = events.len().min(made.along.len()) as u32;

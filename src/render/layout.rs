@@ -388,7 +388,8 @@ pub struct RayLenses {
     pub stretch: f32,
     pub followed: u32,
     pub warped: u32,
-    pub pad_0: [u32; 2],
+    pub moved: u32,
+    pub pad_0: u32,
     pub lenses: [RayLens; RAY_LENSES],
     pub along: [RayEvent; 2 * RAY_LENSES],
     pub knots: [[f32; 4]; RAY_KNOTS],
@@ -801,7 +802,7 @@ mod tests {
             (&warp, host!(RaySources { count, pad_0, all })),
             (
                 &rays,
-                host!(RayLenses { images, planes, events, stretch, followed, warped, pad_0, lenses, along, knots }),
+                host!(RayLenses { images, planes, events, stretch, followed, warped, moved, pad_0, lenses, along, knots }),
             ),
             (
                 &rays,

@@ -24,8 +24,10 @@ use crate::{
         city_source::Source,
         layout,
         plan::FramePlan,
+        ray_vertices::CityTriangles,
         resource::synced::Room,
     },
+    view::View,
 };
 
 /// As `pass/rays.wgsl` has them.
@@ -61,6 +63,8 @@ type MadeOf = Vec<(wgpu::Buffer, Vec<Range<u32>>)>;
 struct Mesh {
     of: MadeOf,
     words: Vec<Word>,
+    /// Whether rays can be followed through it.
+    has_boxes: bool,
     /// Where its triangles begin among them, and how many there are.
     first_triangle: u32,
     triangles: u32,
@@ -127,8 +131,8 @@ impl RayMeshes {
         })
     }
 
-    /// Makes them those of what a frame draws; `true`: the buffer is another one now.
-    pub fn fit(&mut self, gpu: &Gpu, plan: &FramePlan, cities: &Cities) -> Result<bool, GpuError> {
+    /// Makes them those of what a frame draws, with hierarchies where rays are followed; `true`: the buffer is another one now.
+    pub fn fit(&mut self, gpu: &Gpu, plan: &FramePlan, cities: &Cities, follows: bool) -> Result<bool, GpuError> {
         let drawn = cities.drawn_sections(&plan.details, plan.cuts.picture.as_ref());
         let groups = groups_of(&drawn);
         let sections = groups.iter().map(|group| group.parts.len()).max().unwrap_or(0);
@@ -154,12 +158,13 @@ impl RayMeshes {
             let mesh = match known {
                 Some(mesh) => mesh,
                 None => {
-                    let kept = before.iter().position(|mesh| mesh.as_ref().is_some_and(|mesh| mesh.of == of));
+                    let serves = |mesh: &Mesh| mesh.of == of && (mesh.has_boxes || !follows);
+                    let kept = before.iter().position(|mesh| mesh.as_ref().is_some_and(serves));
                     // One that has another place among them has its words elsewhere.
                     is_other |= kept != Some(self.meshes.len());
                     let mesh = match kept.and_then(|kept| before[kept].take()) {
                         Some(mesh) => mesh,
-                        None => Mesh::new(gpu, group, of)?,
+                        None => Mesh::new(gpu, group, of, follows)?,
                     };
                     self.meshes.push(mesh);
                     self.meshes.len() - 1
@@ -194,26 +199,10 @@ impl RayMeshes {
         let view = &plan.input.view;
         let view_from_world = view.basis.view_from_world();
         let mut all: Vec<layout::RayCity> = Vec::new();
-        for Standing { mesh, offset } in &self.standing {
-            let (mesh, first) = (&self.meshes[*mesh], self.begins[*mesh]);
-            let at = *offset as usize;
-            let own: layout::City = match placed.get(at..at + size_of::<layout::City>()) {
-                Some(bytes) => bytemuck::pod_read_unaligned(bytes),
-                None => {
-                    layout::City { scale: 1.0, linear: columns(DMat3::IDENTITY, 0.0), ..bytemuck::Zeroable::zeroed() }
-                }
-            };
-            let column = |c: [f32; 4]| DVec3::new(c[0].into(), c[1].into(), c[2].into());
-            let linear = DMat3::from_cols(column(own.linear[0]), column(own.linear[1]), column(own.linear[2]));
+        for standing in &self.standing {
+            let (mesh, first) = (&self.meshes[standing.mesh], self.begins[standing.mesh]);
+            let Stand { own, linear, eye } = standing.stand(view, placed);
             let inverse = linear.inverse();
-            // Without a place of its own it is counted from the eye.
-            let eye = match placed.is_empty() {
-                true => view.camera.eye,
-                false => {
-                    let from = IVec3::from(own.from_whole).as_dvec3() + glam::Vec3::from(own.from_fraction).as_dvec3();
-                    from - inverse * glam::Vec3::from(own.to).as_dvec3()
-                }
-            };
             let steps = (eye - mesh.origin) / mesh.step;
             let whole = steps.round().clamp(DVec3::splat(-FARTHEST_EYE), DVec3::splat(FARTHEST_EYE));
             let [from_view_x, from_view_y, from_view_z] = columns(inverse * view_from_world.transpose(), mesh.step);
@@ -240,6 +229,52 @@ impl RayMeshes {
         let mut bytes = bytemuck::bytes_of(&[count, 0, 0, 0]).to_vec();
         bytes.extend_from_slice(bytemuck::cast_slice(&all));
         bytes
+    }
+
+    /// The triangles of each, as a view has them.
+    pub fn cities(&self, view: &View, placed: &[u8]) -> Vec<CityTriangles<'_>> {
+        let of = |(city, standing): (u32, &Standing)| {
+            let (mesh, begin) = (&self.meshes[standing.mesh], self.begins[standing.mesh]);
+            let Stand { linear, eye, .. } = standing.stand(view, placed);
+            let first = mesh.first_triangle;
+            CityTriangles {
+                words: &mesh.words[first as usize..(first + 3 * mesh.triangles) as usize],
+                first: begin + first,
+                city,
+                to_view: view.basis.view_from_world() * linear * mesh.step,
+                eye: (eye - mesh.origin) / mesh.step,
+            }
+        };
+        (0..).zip(&self.standing).map(of).collect()
+    }
+}
+
+/// Where a city stands, and where the eye is in its own space.
+struct Stand {
+    own: layout::City,
+    /// From its own space to the world's.
+    linear: DMat3,
+    eye: DVec3,
+}
+
+impl Standing {
+    fn stand(&self, view: &View, placed: &[u8]) -> Stand {
+        let at = self.offset as usize;
+        let own: layout::City = match placed.get(at..at + size_of::<layout::City>()) {
+            Some(bytes) => bytemuck::pod_read_unaligned(bytes),
+            None => layout::City { scale: 1.0, linear: columns(DMat3::IDENTITY, 0.0), ..bytemuck::Zeroable::zeroed() },
+        };
+        let column = |c: [f32; 4]| DVec3::new(c[0].into(), c[1].into(), c[2].into());
+        let linear = DMat3::from_cols(column(own.linear[0]), column(own.linear[1]), column(own.linear[2]));
+        // Without a place of its own it is counted from the eye.
+        let eye = match placed.is_empty() {
+            true => view.camera.eye,
+            false => {
+                let from = IVec3::from(own.from_whole).as_dvec3() + glam::Vec3::from(own.from_fraction).as_dvec3();
+                from - linear.inverse() * glam::Vec3::from(own.to).as_dvec3()
+            }
+        };
+        Stand { own, linear, eye }
     }
 }
 
@@ -295,7 +330,7 @@ fn made_of(group: &Group) -> MadeOf {
 }
 
 impl Mesh {
-    fn new(gpu: &Gpu, group: &Group, of: MadeOf) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, group: &Group, of: MadeOf, follows: bool) -> Result<Self, GpuError> {
         let sources: Result<Vec<(Source, Vec<layout::Plane>)>, GpuError> = group
             .parts
             .iter()
@@ -322,16 +357,19 @@ impl Mesh {
             let own: Vec<Triangle> = starts.par_iter().map(|&start| made.triangle(start as usize)).collect();
             triangles.extend(own);
         }
-        let boxes: Vec<Aabb> = triangles
-            .par_iter()
-            .map(|t| {
-                let around = Aabb::from_points(t.corners.iter().map(|c| c.as_dvec3() * step));
-                let pad = PADDING * reach;
-                Aabb { min: around.min - pad, max: around.max + pad }
-            })
-            .collect();
-        let (nodes, items) = Bvh::build(&boxes).flat(MOST_DEPTH, &boxes);
-        Ok(Self::of_parts(of, &triangles, &nodes, &items, origin, step))
+        let around = |t: &Triangle| {
+            let around = Aabb::from_points(t.corners.iter().map(|c| c.as_dvec3() * step));
+            let pad = PADDING * reach;
+            Aabb { min: around.min - pad, max: around.max + pad }
+        };
+        let (nodes, items) = match follows {
+            true => {
+                let boxes: Vec<Aabb> = triangles.par_iter().map(around).collect();
+                Bvh::build(&boxes).flat(MOST_DEPTH, &boxes)
+            }
+            false => (Vec::new(), (0..triangles.len() as u32).collect()),
+        };
+        Ok(Self { has_boxes: follows, ..Self::of_parts(of, &triangles, &nodes, &items, origin, step) })
     }
 
     fn of_parts(
@@ -359,7 +397,7 @@ impl Mesh {
         }
         words.extend(rests);
         let (first_triangle, triangles) = (first_triangle as u32, items.len() as u32);
-        Self { of, words, first_triangle, triangles, origin, step }
+        Self { of, words, has_boxes: true, first_triangle, triangles, origin, step }
     }
 }
 

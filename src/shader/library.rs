@@ -68,6 +68,7 @@ files! {
     RAY_IMAGES = "pass/ray-images.wgsl";
     RAY_GRID = "lib/ray-grid.wgsl";
     RAYS = "pass/rays.wgsl";
+    RAY_VERTICES = "pass/ray-vertices.wgsl";
     RAY_WARP = "pass/ray-warp.wgsl";
     RAY_WALK = "lib/ray-walk.wgsl";
     RAY_LAYERS = "pass/ray-layers.wgsl";

@@ -16,7 +16,7 @@ use crate::{
             AMBIENT_OCCLUSION, BARE, BENT_EDGES, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS,
             CROSSING, CUT, DEFORM, DEPTH_CODE, FACADE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File,
             GEOMETRY, HELD, HELD_LAYERS, HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED,
-            RAY_GRID, RAY_IMAGES, RAY_LAYERS, RAY_WALK, RAY_WARP, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
+            RAY_GRID, RAY_IMAGES, RAY_LAYERS, RAY_VERTICES, RAY_WALK, RAY_WARP, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
             SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS,
             STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
@@ -51,6 +51,8 @@ pub enum Module {
     Rays(Option<Program>, Bends),
     /// Images of what they meet.
     RayImages(Bends),
+    /// Corners where lenses show them, what is hidden, and how many lenses bend rays.
+    RayVertices(Option<Program>, Bends),
     /// Bent rays, looked up in images of what the eye sees, and how many lenses bend them.
     RayWarp(Bends),
     /// Deferred shading, and what the lenses make of it.
@@ -114,7 +116,7 @@ impl Module {
         files.extend_from_slice(self.held(adapter));
         if self.bends().is_any() {
             files.push(BENT_RAYS);
-            files.extend(matches!(self, Self::Lines(_)).then_some(BENT_EDGES));
+            files.extend(matches!(self, Self::Lines(_) | Self::RayVertices(..)).then_some(BENT_EDGES));
             files.extend(matches!(self, Self::Shade(_) | Self::Composite(_)).then_some(RAY_GRID));
         }
         let text = Template::of_files(&files);
@@ -179,7 +181,7 @@ impl Module {
                 let own = plan.regions.as_ref().map(|regions| regions::marks(plan, regions, lenses));
                 text.fill("handlers", own.unwrap_or_default())
             }
-            Self::Rays(program, _) => {
+            Self::Rays(program, _) | Self::RayVertices(program, _) => {
                 let asked = program.as_ref().map(|p| (hidden(p, Eye::Rays), p.has().has_cities()));
                 text.fill("handlers", followed::source(asked))
                     .fill("met", followed::FIRST)
@@ -216,7 +218,7 @@ impl Module {
             | Self::Layers(program, _)
             | Self::RayLayers(program)
             | Self::Lines(program) => program.has().bends,
-            Self::Rays(_, bends) | Self::RayImages(bends) | Self::RayWarp(bends) => *bends,
+            Self::Rays(_, bends) | Self::RayVertices(_, bends) | Self::RayImages(bends) | Self::RayWarp(bends) => *bends,
             _ => Bends::default(),
         }
     }
@@ -236,6 +238,12 @@ impl Module {
             Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, GEOMETRY],
             Self::RayImages(_) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAY_IMAGES],
             Self::RayWarp(_) => &[VIEW, VIEW_UNIFORM, SURFACE, RAY_WARP],
+            Self::RayVertices(None, _) => {
+                &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAY_VERTICES]
+            }
+            Self::RayVertices(Some(program), _) => {
+                return files::of_city(program, &[FACADE, RAY_WALK, RAY_VERTICES]);
+            }
             Self::Rays(None, _) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAYS],
             Self::Rays(Some(program), _) => return files::of_city(program, &[FACADE, RAY_WALK, RAYS]),
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, FACADE, GEOMETRY]),

@@ -242,7 +242,7 @@ words! {
     BorderUnit: [("m", Self::Metres), ("px", Self::Pixels), ("ray", Self::Ray)];
     Discrete: [("threshold", Self::Threshold), ("dither", Self::Dither)];
     RayOutline: [("circle", Self::Circle), ("square", Self::Square)];
-    RayMethod: [("rays", Self::Rays), ("image", Self::Image)];
+    RayMethod: [("rays", Self::Rays), ("image", Self::Image), ("vertices", Self::Vertices)];
     FisheyeProjection: [("angular", Self::Angular), ("hemispherical", Self::Hemispherical)];
     Format: Self::WORDS;
     Mapping: Self::WORDS;

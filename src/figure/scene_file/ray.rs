@@ -210,10 +210,10 @@ const RAY_ROWS: &[Row<RayLens>] = &[
     field!(
         key(
             "method",
-            Kind::Word { now: &["rays", "image"], later: &["vertices"] },
+            Kind::Word { now: &["rays", "image", "vertices"], later: &[] },
             "\"rays\"",
             "",
-            "How what it shows is found: by exact `rays` through the triangles; or by a look into an `image` of what the eye sees without it, which needs no hierarchy over the city, and where what is hidden is missing.",
+            "How what it shows is found: by exact `rays` through the triangles; or by a look into an `image` of what the eye sees without it, which needs no hierarchy over the city, and where what is hidden is missing; or by moving the `vertices` of the city's triangles, cut into smaller ones, to where it shows them.",
             "\"image\"",
         ),
         Word,
@@ -225,7 +225,7 @@ const RAY_ROWS: &[Row<RayLens>] = &[
             Kind::Number { min: 0.1, max: 8.0 },
             "1",
             "",
-            "Of a `method` other than rays, how finely: texels of the image to a pixel, along an axis, where the lens magnifies most.",
+            "Of a `method` other than rays, how finely: texels of the image to a pixel, along an axis, where the lens magnifies most; or how many times shorter the sides of triangles are than 12 pixels.",
             "2.0",
         ),
         Same,

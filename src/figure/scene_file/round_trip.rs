@@ -408,7 +408,7 @@ fn ray_lenses() -> impl Strategy<Value = LensKind> {
     let bend = prop_oneof![magnify, feature, sample, fisheye];
     let mask = prop::option::of("[a-zß]{1,6}[.]png");
     let place = (prop::array::uniform2(0.0..=1.0f64), 0.001..4.0f64, any::<bool>(), any::<bool>(), mask);
-    let method = prop_oneof![Just(RayMethod::Rays), Just(RayMethod::Image)];
+    let method = prop_oneof![Just(RayMethod::Rays), Just(RayMethod::Image), Just(RayMethod::Vertices)];
     (bend, place, method, 0.1..=8.0f64).prop_map(|(bend, (center, radius, is_square, grid, mask), method, fineness)| {
         let outline = if is_square { RayOutline::Square } else { RayOutline::Circle };
         let mut ray = RayLens { radius, grid, method, fineness, ..RayLens::new(bend) };

@@ -520,7 +520,7 @@ fn every_mistake_in_a_lens_that_bends_rays_is_named() {
         ("magnifier", "border = 1.5", "ray.border: must be a number 0 to 1, is 1.5"),
         ("magnifier", "center = [0.5, 2]", "ray.center: must be"),
         ("magnifier", "distance = 0", "ray.distance: must be a number ≥ 0.001, is 0"),
-        ("magnifier", "method = \"vertices\"", "ray.method: \"vertices\" is not available yet; available: rays, image"),
+        ("magnifier", "method = \"warp\"", "ray.method: \"warp\" is none of rays, image, vertices"),
         ("magnifier", "angle_deg = 90", "ray.angle_deg: has a meaning only for a lens of kind = \"fisheye\""),
         (
             "fisheye",

@@ -16,6 +16,7 @@
 //! count sections          how many closed shells are laid open there,
 //! sections                and the surface that closes them
 //! bent rays               what lenses that bend rays show, in place of what was drawn there,
+//! moved corners           or the city's triangles where they show its corners,
 //! images of rays          and its images, where it has some
 //! images of lenses        of lenses that bend pictures: what the eye sees, as finely as they show it,
 //! bent pictures           and what pixels in them find there, in place of what was drawn

@@ -16,14 +16,16 @@ use crate::{
         plan::FramePlan,
         programs::Programs,
         ray_meshes::RayMeshes,
+        ray_vertices::pieces,
         resource::{
-            bindings::{DEPTHS, GroupLayout, NUMBERS, STORAGE, UNIFORM, all_of, group, whole},
+            bindings::{DEPTHS, DRAWN, GroupLayout, NUMBERS, STORAGE, UNIFORM, all_of, group, whole},
             formats::{COLORS, EMISSIONS, OWN_DEPTH, RAY_HITS, codes},
             key::{Draw, Parts, PipelineKey, Stage, depth_test, flag, words},
             layouts::{CUT_CITY, IMAGES, LENSES, VIEW},
             recording::{Counted, DrawnPass, Recording, Shaded, kept, kept_depth, scissor},
             synced::Synced,
             targets::Needs,
+            vertices,
         },
     },
     scene::Technique,
@@ -32,11 +34,23 @@ use crate::{
 
 /// Group 3: cities, and the triangles of their meshes.
 pub static RAYS: GroupLayout =
-    GroupLayout { label: "rays", entries: &[(0, S::FRAGMENT, UNIFORM), (1, S::FRAGMENT, STORAGE)] };
+    GroupLayout { label: "rays", entries: &[(0, DRAWN, UNIFORM), (1, DRAWN, STORAGE)] };
 
-/// Rays that are followed.
+/// What is drawn of lenses that bend rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Step {
+    /// What rays meet that are followed.
+    Follow,
+    /// Nothing, where corners are moved,
+    Clear,
+    /// and what moved corners make of the city.
+    Move,
+}
+
+/// Rays that are followed, or corners that are moved.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 struct RayKey {
+    step: Step,
     /// What is hidden.
     hidden: Option<Program>,
     /// How many lenses bend rays.
@@ -52,14 +66,22 @@ struct RayKey {
 }
 
 impl RayKey {
-    fn new(plan: &FramePlan, programs: &Programs) -> Self {
+    fn new(plan: &FramePlan, programs: &Programs, step: Step) -> Self {
         Self {
+            step,
             hidden: programs.picture.clone(),
             bends: plan.input.operations.bends,
             colored: plan.colored,
             smooth: plan.smooth,
             measured: plan.input.measured,
             imaged: has_images(plan),
+        }
+    }
+
+    fn module(&self) -> Module {
+        match self.step {
+            Step::Follow => Module::Rays(self.hidden.clone(), self.bends),
+            Step::Clear | Step::Move => Module::RayVertices(self.hidden.clone(), self.bends),
         }
     }
 }
@@ -71,13 +93,23 @@ impl PipelineKey for RayKey {
             (self.smooth, "smooth"),
             (self.measured, "measured"),
             (self.imaged, "imaged"),
+            (self.step == Step::Clear, "clear"),
         ]);
-        format!("{}{flags}", Module::Rays(self.hidden.clone(), self.bends).name())
+        format!("{}{flags}", self.module().name())
     }
 
     fn parts(&self, _: wgpu::TextureFormat) -> Parts {
+        let (vertex, fragment) = match self.step {
+            Step::Follow => ("vertex", "follow"),
+            Step::Clear => ("vertex", "cleared"),
+            Step::Move => ("vertex_moved", "moved"),
+        };
+        let (compare, buffers) = match self.step {
+            Step::Follow | Step::Clear => (wgpu::CompareFunction::Always, Vec::new()),
+            Step::Move => (wgpu::CompareFunction::Greater, vec![vertices::pieces()]),
+        };
         Parts {
-            module: Module::Rays(self.hidden.clone(), self.bends),
+            module: self.module(),
             groups: vec![Some(&VIEW), Some(&CUT_CITY), Some(&LENSES), Some(&RAYS)],
             constants: vec![("SMOOTH", flag(self.smooth))],
             stage: Stage::Draw(Draw {
@@ -88,8 +120,9 @@ impl PipelineKey for RayKey {
                     self.imaged.then(|| RAY_HITS.into()),
                     None,
                 ]),
-                depth: Some(depth_test(wgpu::CompareFunction::Always, true)),
-                ..Draw::new("vertex", Some("follow"))
+                depth: Some(depth_test(compare, true)),
+                buffers,
+                ..Draw::new(vertex, Some(fragment))
             }),
         }
     }
@@ -142,8 +175,26 @@ impl PipelineKey for RayImageKey {
 pub struct Where {
     /// To what is opaque, in lenses that find it so.
     opaque: Vec<PictureTile>,
+    /// In place of that corners are moved.
+    moved: Vec<PictureTile>,
     /// To all that is translucent, whatever the lens: images do not show it.
     layers: Vec<PictureTile>,
+}
+
+impl Where {
+    fn is_empty(&self) -> bool {
+        self.opaque.is_empty() && self.moved.is_empty() && self.layers.is_empty()
+    }
+
+    /// Whether something of it is drawn where the opaque city is.
+    fn draws(&self) -> bool {
+        !(self.opaque.is_empty() && self.moved.is_empty())
+    }
+
+    /// Whether rays are followed.
+    fn follows(&self) -> bool {
+        !(self.opaque.is_empty() && self.layers.is_empty())
+    }
 }
 
 /// Where rays are bent, and what they are followed through: for passes that follow them, too.
@@ -162,6 +213,9 @@ struct Kept {
     meshes: RayMeshes,
     cities: Synced,
     group: wgpu::BindGroup,
+    /// Triangles that are cut, and how many alike.
+    pieces: Synced,
+    counts: Vec<u32>,
 }
 
 impl Kept {
@@ -169,7 +223,8 @@ impl Kept {
         let meshes = RayMeshes::new(stage.gpu)?;
         let cities = Synced::new(stage.gpu, "cities of rays", wgpu::BufferUsages::UNIFORM)?;
         let group = group_of(stage, &meshes, &cities);
-        Ok(Self { meshes, cities, group })
+        let pieces = Synced::new(stage.gpu, "triangles that are cut", wgpu::BufferUsages::VERTEX)?;
+        Ok(Self { meshes, cities, group, pieces, counts: Vec::new() })
     }
 }
 
@@ -191,6 +246,22 @@ impl RayImageKey {
 }
 
 impl Kept {
+    /// Draws triangles whose corners are moved.
+    fn draw_pieces(&self, pass: &mut wgpu::RenderPass, parts: &[PictureTile]) -> Counted {
+        let mut counted = Counted::NONE;
+        let Some(all) = parts.iter().copied().reduce(PictureTile::around) else { return counted };
+        scissor(pass, all);
+        pass.set_vertex_buffer(0, self.pieces.buffer().slice(..));
+        let mut first = 0;
+        for (level, count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+            let corners = 3 << (2 * level);
+            pass.draw(0..corners, first..first + count);
+            counted += Counted { draws: 1, triangles: u64::from(corners / 3) * u64::from(*count) };
+            first += count;
+        }
+        counted
+    }
+
     /// Looks at the images of what rays meet, section by section.
     fn draw_images(&self, parts: &[PictureTile], frame: &FrameContext, recording: &mut Recording) {
         let FrameContext { gpu, pipelines, cities, targets, groups, plan, .. } = *frame;
@@ -236,6 +307,7 @@ impl Pass for Rays {
 
     const LIST: &'static [Line] = &[
         ("bent rays", "what lenses that bend rays show, in place of what was drawn there,"),
+        ("moved corners", "or the city's triangles where they show its corners,"),
         ("images of rays", "and its images, where it has some"),
     ];
 
@@ -247,18 +319,26 @@ impl Pass for Rays {
         let input = plan.input;
         let parts = |is_wanted: &dyn Fn(RayMethod) -> bool| bent::parts(input.rays, &input.view, input.tile, is_wanted);
         let opaque = parts(&|method| method == RayMethod::Rays);
+        let moved = parts(&|method| method == RayMethod::Vertices);
         let layers = if plan.plans.layering.is_some() { parts(&|_| true) } else { Vec::new() };
-        let is_asked = input.technique == Technique::Accumulate && !(opaque.is_empty() && layers.is_empty());
-        is_asked.then_some(Where { opaque, layers })
+        let all = Where { opaque, moved, layers };
+        (input.technique == Technique::Accumulate && !all.is_empty()).then_some(all)
     }
 
     fn add_needs(parts: &Where, plan: &FramePlan, needs: &mut Needs) {
-        needs.ray_hits |= !parts.opaque.is_empty() && has_images(plan);
+        needs.ray_hits |= parts.draws() && has_images(plan);
     }
 
     fn add_keys(&self, input: Option<&Where>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
-        if input.is_some_and(|parts| !parts.opaque.is_empty()) {
-            keys.add_programs(24, [RayKey::new(plan, programs)]);
+        let Some(parts) = input else { return };
+        let steps = [
+            (Step::Follow, !parts.opaque.is_empty()),
+            (Step::Clear, !parts.moved.is_empty()),
+            (Step::Move, !parts.moved.is_empty()),
+        ];
+        let asked = steps.into_iter().filter(|(_, is_asked)| *is_asked);
+        keys.add_programs(24, asked.map(|(step, _)| RayKey::new(plan, programs, step)));
+        if parts.draws() {
             if has_images(plan) {
                 let emits = [false, true].into_iter().filter(|emits| !emits || plan.texels_emit);
                 keys.add(24, emits.map(|emits| RayImageKey::new(plan, emits)));
@@ -266,15 +346,21 @@ impl Pass for Rays {
         }
     }
 
-    fn prepare(&mut self, _: &Where, stage: &mut Preparing) -> Result<(), GpuError> {
+    fn prepare(&mut self, parts: &Where, stage: &mut Preparing) -> Result<(), GpuError> {
         let mut kept = match self.0.take() {
             Some(kept) => kept,
             None => Kept::new(stage)?,
         };
         let (gpu, plan) = (stage.gpu, stage.plan);
-        let mut is_stale = kept.meshes.fit(gpu, plan, &stage.cities)?;
+        let mut is_stale = kept.meshes.fit(gpu, plan, &stage.cities, parts.follows())?;
         let placed = stage.cities.uniforms(plan.input.view.camera.eye, plan.input.operations);
         is_stale |= kept.cities.sync(gpu, &kept.meshes.uniform(plan, &placed))?;
+        if !parts.moved.is_empty() {
+            let view = &plan.input.view;
+            let pieces = pieces(plan.input.rays, view, &kept.meshes.cities(view, &placed));
+            kept.pieces.sync(gpu, &pieces.all)?;
+            kept.counts = pieces.counts.to_vec();
+        }
         if is_stale {
             kept.group = group_of(stage, &kept.meshes, &kept.cities);
         }
@@ -284,17 +370,18 @@ impl Pass for Rays {
 
     fn record(
         &mut self,
-        Where { opaque: parts, layers }: &Where,
+        parts: &Where,
         frame: &FrameContext,
         recording: &mut Recording,
         board: &mut Board,
     ) -> Result<(), GpuError> {
         let Some(kept) = &self.0 else { return Ok(()) };
+        let Where { opaque, moved, layers } = parts;
         board.put(Followed { parts: layers.clone(), group: kept.group.clone() });
-        if parts.is_empty() {
+        if !parts.draws() {
             return Ok(());
         }
-        let FrameContext { targets, groups, plan, .. } = *frame;
+        let FrameContext { targets, groups, plan, pipelines, .. } = *frame;
         let targeted = in_order([
             Some(&targets.codes),
             plan.colored.then_some(&targets.colors),
@@ -304,29 +391,52 @@ impl Pass for Rays {
         ]);
         let colors: Vec<_> = targeted.into_iter().map(|target| target.map(|target| self::kept(&target.view))).collect();
         let lenses: Vec<u32> = plan.input.rays.lenses();
-        let pass = DrawnPass {
-            name: "bent rays",
-            view: "main",
-            lenses: &lenses,
-            shaded: Shaded::Counted,
-            colors: &colors,
-            depth: Some(kept_depth(&targets.depth.view)),
+        let draw = |recording: &mut Recording, name, draw: &dyn Fn(&mut wgpu::RenderPass) -> Counted| {
+            let pass = DrawnPass {
+                name,
+                view: "main",
+                lenses: &lenses,
+                shaded: Shaded::Counted,
+                colors: &colors,
+                depth: Some(kept_depth(&targets.depth.view)),
+            };
+            recording.draw(pass, |pass| {
+                pass.set_bind_group(0, &groups.view, &[]);
+                pass.set_bind_group(1, &groups.cut_city, &[0; 2]);
+                pass.set_bind_group(2, &groups.lenses, &[]);
+                pass.set_bind_group(3, &kept.group, &[]);
+                draw(pass)
+            });
         };
-        recording.draw(pass, |pass| {
-            pass.set_pipeline(frame.pipelines.get(&RayKey::new(plan, frame.programs)));
-            pass.set_bind_group(0, &groups.view, &[]);
-            pass.set_bind_group(1, &groups.cut_city, &[0; 2]);
-            pass.set_bind_group(2, &groups.lenses, &[]);
-            pass.set_bind_group(3, &kept.group, &[]);
-            for part in parts {
-                scissor(pass, *part);
-                pass.draw(0..3, 0..1);
-            }
-            Counted { draws: parts.len() as u32, triangles: parts.len() as u64 }
-        });
+        let key = |step| RayKey::new(plan, frame.programs, step);
+        if !opaque.is_empty() {
+            draw(recording, "bent rays", &|pass| {
+                pass.set_pipeline(pipelines.get(&key(Step::Follow)));
+                draw_parts(pass, opaque)
+            });
+        }
+        if !moved.is_empty() {
+            draw(recording, "moved corners", &|pass| {
+                pass.set_pipeline(pipelines.get(&key(Step::Clear)));
+                let mut counted = draw_parts(pass, moved);
+                pass.set_pipeline(pipelines.get(&key(Step::Move)));
+                counted += kept.draw_pieces(pass, moved);
+                counted
+            });
+        }
         if has_images(plan) && !kept.meshes.images.is_empty() {
-            kept.draw_images(parts, frame, recording);
+            let parts = PictureTile::apart(opaque.iter().chain(moved).copied());
+            kept.draw_images(&parts, frame, recording);
         }
         Ok(())
     }
+}
+
+/// Draws one triangle over parts of the picture.
+fn draw_parts(pass: &mut wgpu::RenderPass, parts: &[PictureTile]) -> Counted {
+    for part in parts {
+        scissor(pass, *part);
+        pass.draw(0..3, 0..1);
+    }
+    Counted { draws: parts.len() as u32, triangles: parts.len() as u64 }
 }
