@@ -5,7 +5,7 @@ const EDGE_PARTS: u32 = 12u;
 
 // A place of the picture at which a plane shows what lies at D, as without it `across` has it: the inverse of what it does to rays, by itself.
 fn shown_by_plane(lens: u32, across: vec2f, distance: f32) -> vec2f {
-    let own = ray_lenses.lenses[lens];
+    let own = ray_lens(lens);
     let share = rim_share(lens, across);
     if distance <= own.distance || share >= 1.0 || own.outline == OUTLINE_FIELD {
         return across;
@@ -41,7 +41,7 @@ fn shown_by_planes(across: vec2f, distance: f32) -> vec2f {
     // Several bend what others have bent; and a field knows no radius.
     var rounds = select(0u, 12u, RAY_PLANES > 1u);
     for (var i = 0u; i < RAY_PLANES; i++) {
-        rounds = max(rounds, select(0u, 40u, ray_lenses.lenses[RAY_IMAGES + i].outline == OUTLINE_FIELD));
+        rounds = max(rounds, select(0u, 40u, ray_lens(RAY_IMAGES + i).outline == OUTLINE_FIELD));
     }
     for (var i = 0u; i < rounds; i++) {
         found += across - seen_by_planes(found, distance);
@@ -65,13 +65,13 @@ fn shown_by_sampling(lens: u32, across: vec2f) -> vec2f {
             high = middle;
         }
     }
-    let center = ray_lenses.lenses[lens].center;
+    let center = ray_lens(lens).center;
     return center + 0.5 * (low + high) / share * (across - center);
 }
 
 // The place of the picture at which a fisheye shows a place, and how far it is; beyond its rim: z < 0.
 fn shown_by_fisheye(lens: u32, p: vec3f) -> vec3f {
-    let own = ray_lenses.lenses[lens];
+    let own = ray_lens(lens);
     let middle = select(own.center, vec2f(0.0), view.orthographic == 1u);
     let forward = normalize(vec3f(middle, -1.0));
     let right = normalize(vec3f(-forward.z, 0.0, forward.x));
@@ -99,7 +99,7 @@ fn displayed(p: vec3f) -> vec3f {
     for (var k = 0u; k < RAY_IMAGES; k++) {
         // The lowest first.
         let lens = RAY_IMAGES - 1u - k;
-        let is_sampled = ray_lenses.lenses[lens].kind == RAY_SAMPLED;
+        let is_sampled = ray_lens(lens).kind == RAY_SAMPLED;
         let scale = select(max(-shown.z, view.near), 1.0, is_flat);
         let is_within = shown.z < 0.0 && rim_share(lens, shown.xy / scale) < 1.0;
         let at = shown_by_fisheye(lens, p);
@@ -126,7 +126,7 @@ fn may_be_bent(p: vec3f, q: vec3f) -> bool {
     let b = q.xy / select(-q.z, 1.0, is_flat);
     var may = false;
     for (var lens = 0u; lens < RAY_IMAGES + RAY_PLANES; lens++) {
-        let own = ray_lenses.lenses[lens];
+        let own = ray_lens(lens);
         let along = b - a;
         let t = clamp(dot(own.center - a, along) / max(dot(along, along), 1e-30), 0.0, 1.0);
         may |= length(a + t * along - own.center) < 1.42 * own.radius || own.kind >= RAY_ANGULAR;

@@ -65,11 +65,11 @@ struct Path {
 
 // How far a place of the picture is from the middle of a lens, in radii.
 fn rim_share(lens: u32, across: vec2f) -> f32 {
-    let place = (across - ray_lenses.lenses[lens].center) / ray_lenses.lenses[lens].radius;
+    let place = (across - ray_lens(lens).center) / ray_lens(lens).radius;
     let reach = max(abs(place.x), abs(place.y));
-    var share = select(length(place), reach, ray_lenses.lenses[lens].outline == OUTLINE_SQUARE);
-    if ray_lenses.lenses[lens].outline == OUTLINE_FIELD {
-        share = select(FAR_AWAY, field_share(ray_lenses.lenses[lens].first_knot, place), reach < 1.0);
+    var share = select(length(place), reach, ray_lens(lens).outline == OUTLINE_SQUARE);
+    if ray_lens(lens).outline == OUTLINE_FIELD {
+        share = select(FAR_AWAY, field_share(ray_lens(lens).first_knot, place), reach < 1.0);
     }
     return share;
 }
@@ -112,16 +112,16 @@ fn most_stretch(pixel: vec2f, reach: f32) -> f32 {
     let width = reach * max(abs(view.across_from_pixel.x), abs(view.across_from_pixel.y));
     var may = false;
     for (var lens = 0u; lens < RAY_IMAGES + RAY_PLANES; lens++) {
-        may |= rim_share(lens, across) < 1.0 + 1.4143 * width / ray_lenses.lenses[lens].radius;
+        may |= rim_share(lens, across) < 1.0 + 1.4143 * width / ray_lens(lens).radius;
     }
     return select(1.0, ray_lenses.stretch, may);
 }
 
 // The radius of the picture at one of a lens', by the radius; 1 at the rim.
 fn sampled_scale(lens: u32, share: f32) -> f32 {
-    let first = ray_lenses.lenses[lens].first_knot;
+    let first = ray_lens(lens).first_knot;
     var low = 0u;
-    var high = ray_lenses.lenses[lens].knots - 1u;
+    var high = ray_lens(lens).knots - 1u;
     while high - low > 1u {
         let middle = (low + high) / 2u;
         if ray_lenses.knots[first + middle].x <= share {
@@ -156,7 +156,7 @@ fn sine_and_cosine(angle: f32) -> vec2f {
 
 // The ray of a place of a fisheye.
 fn round_ray(lens: u32, across: vec2f) -> Ray {
-    let own = ray_lenses.lenses[lens];
+    let own = ray_lens(lens);
     let middle = select(own.center, vec2f(0.0), view.orthographic == 1u);
     let forward = normalize(vec3f(middle, -1.0));
     let right = normalize(vec3f(-forward.z, 0.0, forward.x));
@@ -179,14 +179,14 @@ fn path_of_place(place: vec2f) -> Path {
     var path: Path;
     for (var lens = 0u; lens < RAY_IMAGES; lens++) {
         let share = rim_share(lens, across);
-        let is_sampled = ray_lenses.lenses[lens].kind == RAY_SAMPLED;
+        let is_sampled = ray_lens(lens).kind == RAY_SAMPLED;
         let is_met = share < 1.0 && !path.is_round;
         if is_met && !is_sampled {
             path.ray = round_ray(lens, across);
             path.is_round = true;
         }
         if is_met && is_sampled {
-            let center = ray_lenses.lenses[lens].center;
+            let center = ray_lens(lens).center;
             across = center + sampled_scale(lens, share) * (across - center);
         }
     }
@@ -203,10 +203,10 @@ fn straight_ray(across: vec2f) -> Ray {
 
 // What becomes of a ray there.
 fn pass_event(path: ptr<function, Path>, number: u32) {
-    let event = ray_lenses.along[number];
+    let event = ray_event(number);
     // Of one alone nothing is looked for.
     let plane = select(event.lens - RAY_IMAGES, 0u, RAY_PLANES == 1u);
-    let lens = ray_lenses.lenses[RAY_IMAGES + plane];
+    let lens = ray_lens(RAY_IMAGES + plane);
     let is_flat = view.orthographic == 1u;
     let at = (*path).ray.origin.xy + event.distance * (*path).ray.direction.xy;
     let scale = select(event.distance, 1.0, is_flat);
@@ -229,7 +229,7 @@ fn bent_by_planes(across: vec2f, distance: f32) -> Ray {
     var path: Path;
     path.ray = straight_ray(across);
     for (var i = 0u; i < 2u * RAY_PLANES; i++) {
-        if ray_lenses.along[i].distance < distance {
+        if ray_event(i).distance < distance {
             pass_event(&path, i);
         }
     }
@@ -240,7 +240,7 @@ fn bent_by_planes(across: vec2f, distance: f32) -> Ray {
 fn bent_ray(place: vec2f, distance: f32) -> Ray {
     var path = path_of_place(place);
     for (var i = 0u; i < 2u * RAY_PLANES; i++) {
-        if !path.is_round && ray_lenses.along[i].distance < distance {
+        if !path.is_round && ray_event(i).distance < distance {
             pass_event(&path, i);
         }
     }
@@ -289,9 +289,9 @@ fn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {
 fn line_ends(distance: f32) -> f32 {
     var end = FAR_AWAY;
     for (var i = 0u; i < 2u * RAY_PLANES; i++) {
-        let event = ray_lenses.along[i];
+        let event = ray_event(i);
         let plane = select(event.lens - RAY_IMAGES, 0u, RAY_PLANES == 1u);
-        let is_bent = ray_lenses.lenses[RAY_IMAGES + plane].power != 0.0;
+        let is_bent = ray_lens(RAY_IMAGES + plane).power != 0.0;
         end = select(end, min(end, event.distance), is_bent && event.distance > distance);
     }
     return end;

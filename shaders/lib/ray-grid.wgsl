@@ -9,10 +9,10 @@ fn grid_place(lens: u32, pixel: vec2f) -> vec2f {
     let distance = min(seen_distance, 1e9);
     let ray = bent_ray(across_of_pixel(pixel), distance);
     let at = ray.origin.xy + distance * ray.direction.xy;
-    let flat = (select(at / distance, at, view.orthographic == 1u) - ray_lenses.lenses[lens].center) / ray_lenses.lenses[lens].grid;
+    let flat = (select(at / distance, at, view.orthographic == 1u) - ray_lens(lens).center) / ray_lens(lens).grid;
     let d = ray.direction;
     let round = vec2f(atan2(d.x, -d.z), atan2(d.y, length(d.xz))) / GRID_ANGLE;
-    return select(flat, round, ray_lenses.lenses[lens].kind >= RAY_ANGULAR);
+    return select(flat, round, ray_lens(lens).kind >= RAY_ANGULAR);
 }
 
 // How much of a pixel lines cover, along one axis; `turn`: how far the next pixels are in it.
@@ -30,7 +30,7 @@ fn gridded(paint: vec4f, pixel: vec2i) -> vec4f {
     let across = across_of_pixel(at);
     var seen = paint;
     for (var lens = 0u; lens < RAY_IMAGES + RAY_PLANES; lens++) {
-        let own = ray_lenses.lenses[lens];
+        let own = ray_lens(lens);
         if rim_share(lens, across) < 1.0 && own.grid > 0.0 {
             let here = grid_place(lens, at);
             let right = grid_place(lens, at + vec2f(1.0, 0.0)) - here;

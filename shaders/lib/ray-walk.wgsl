@@ -53,6 +53,10 @@ struct CityRay {
     inverse: vec3f,             // of the direction, finite
     axes: vec3u,                // the last is that along which it goes most
     shear: vec2f,
+    // Where places of the city are counted from: as `RayCity` has it.
+    eye: vec3i,
+    eye_fraction: vec3f,        // what is left of it, steps
+    step: f32,                  // metres
 }
 
 fn component(v: vec3f, axis: u32) -> f32 {
@@ -72,7 +76,7 @@ fn city_ray(number: u32, ray: Ray) -> CityRay {
     // 2^-80 in place of 0: what it is divided by stays a number.
     let least = select(vec3f(8.2718061e-25), vec3f(-8.2718061e-25), direction < vec3f(0.0));
     let divisor = select(direction, least, size < vec3f(8.2718061e-25));
-    return CityRay(origin, direction, own.eye_in_boxes + origin, 1.0 / divisor, axes, shear);
+    return CityRay(origin, direction, own.eye_in_boxes + origin, 1.0 / divisor, axes, shear, own.eye, own.eye_fraction, own.from_view_x.w);
 }
 
 // Where a ray is in a box, of its parameter: a little more than that.
@@ -168,9 +172,8 @@ struct Hit {
 const NO_HIT = Hit(1e30, 0u, 0u, vec2f(0.0));
 
 // A corner relative to where the ray begins, sheared along it: the same for all triangles that have it.
-fn sheared(number: u32, ray: CityRay, words: vec4u) -> vec3f {
-    let own = ray_cities.all[number];
-    let relative = (vec3f(vec3i(words.xyz) - own.eye) - own.eye_fraction) * own.from_view_x.w - ray.origin;
+fn sheared(ray: CityRay, words: vec4u) -> vec3f {
+    let relative = (vec3f(vec3i(words.xyz) - ray.eye) - ray.eye_fraction) * ray.step - ray.origin;
     let depth = component(relative, ray.axes.z);
     return vec3f(component(relative, ray.axes.x) - ray.shear.x * depth, component(relative, ray.axes.y) - ray.shear.y * depth, depth);
 }
@@ -178,9 +181,9 @@ fn sheared(number: u32, ray: CityRay, words: vec4u) -> vec3f {
 // Where a ray meets a triangle.
 fn hit_of(number: u32, ray: CityRay, triangle: u32) -> Hit {
     let words = ray_words[triangle + 1u];
-    let a = sheared(number, ray, ray_words[triangle]);
-    let b = sheared(number, ray, words);
-    let c = sheared(number, ray, ray_words[triangle + 2u]);
+    let a = sheared(ray, ray_words[triangle]);
+    let b = sheared(ray, words);
+    let c = sheared(ray, ray_words[triangle + 2u]);
     let u = difference_of_products(b.x, c.y, b.y, c.x);
     let v = difference_of_products(c.x, a.y, c.y, a.x);
     let w = difference_of_products(a.x, b.y, a.y, b.x);
@@ -192,16 +195,15 @@ fn hit_of(number: u32, ray: CityRay, triangle: u32) -> Hit {
     let depth = (u * a.z + v * b.z + w * c.z) / sum;
     var t = depth / component(ray.direction, ray.axes.z);
     if (words.w & TRIANGLE_IN_PLANE) != 0u {
-        t = distance_to_plane(number, ray, ray_cities.all[number].boxes + ray_words[triangle + 2u].w, t);
+        t = distance_to_plane(ray, ray_cities.all[number].boxes + ray_words[triangle + 2u].w, t);
     }
     return Hit(t, triangle, number, vec2f(v, w) / sum);
 }
 
 // Faces of one plane are equally far, to the bit; `t`: where the ray goes along the plane.
-fn distance_to_plane(number: u32, ray: CityRay, rest: u32, t: f32) -> f32 {
-    let own = ray_cities.all[number];
+fn distance_to_plane(ray: CityRay, rest: u32, t: f32) -> f32 {
     let normal = bitcast<vec3f>(ray_words[rest].xyz);
-    let relative = (vec3f(vec3i(ray_words[rest + 1u].xyz) - own.eye) - own.eye_fraction) * own.from_view_x.w - ray.origin;
+    let relative = (vec3f(vec3i(ray_words[rest + 1u].xyz) - ray.eye) - ray.eye_fraction) * ray.step - ray.origin;
     let slope = dot(normal, ray.direction);
     let found = (dot(normal, relative) + bitcast<f32>(ray_words[rest].w)) / slope;
     return select(t, found, abs(slope) > 1e-6 * length(ray.direction));
@@ -269,7 +271,7 @@ fn first_of_pixel(at: vec2f, last: Hit) -> Hit {
     for (var i = 0u; i <= count; i++) {
         var end = FAR_AWAY;
         if i < count {
-            end = ray_lenses.along[i].distance;
+            end = ray_event(i).distance;
         }
         if found.t > begin && end > begin {
             for (var number = 0u; number < ray_cities.count; number++) {
@@ -293,9 +295,9 @@ fn rest_of(hit: Hit) -> u32 {
 // The weights of the corners where a line meets the plane of a triangle.
 fn weights_beside(at: vec2f, hit: Hit) -> vec2f {
     let ray = city_ray(hit.city, bent_ray(across_of_pixel(at), hit.t));
-    let a = sheared(hit.city, ray, ray_words[hit.triangle]);
-    let b = sheared(hit.city, ray, ray_words[hit.triangle + 1u]);
-    let c = sheared(hit.city, ray, ray_words[hit.triangle + 2u]);
+    let a = sheared(ray, ray_words[hit.triangle]);
+    let b = sheared(ray, ray_words[hit.triangle + 1u]);
+    let c = sheared(ray, ray_words[hit.triangle + 2u]);
     let u = b.x * c.y - b.y * c.x;
     let v = c.x * a.y - c.y * a.x;
     let w = a.x * b.y - a.y * b.x;

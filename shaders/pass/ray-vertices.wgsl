@@ -5,7 +5,7 @@ override SMOOTH: bool = false;      // whether some faces of the picture have a 
 
 // The parts of a triangle that is cut so many times along each side lie in rows, the first at its first corner.
 struct Moved {
-    @builtin(position) clip: vec4f,
+    @builtin(position) @invariant clip: vec4f,
     @location(0) @interpolate(flat, either) hit: vec2u,     // where the triangle's words begin, and its city
     @location(1) weights: vec2f,                            // of its second and third corner
     @location(2) is_shown: f32,                             // less than 1 where a corner is shown nowhere
@@ -66,16 +66,16 @@ fn is_moved(pixel: vec2f) -> bool {
 // Where a line meets the plane of a triangle: the weights of its second and third corner, and how far.
 fn plane_met(hit: Hit, line: Ray) -> vec3f {
     let ray = city_ray(hit.city, line);
-    let a = sheared(hit.city, ray, ray_words[hit.triangle]);
-    let b = sheared(hit.city, ray, ray_words[hit.triangle + 1u]);
-    let c = sheared(hit.city, ray, ray_words[hit.triangle + 2u]);
+    let a = sheared(ray, ray_words[hit.triangle]);
+    let b = sheared(ray, ray_words[hit.triangle + 1u]);
+    let c = sheared(ray, ray_words[hit.triangle + 2u]);
     let u = b.x * c.y - b.y * c.x;
     let v = c.x * a.y - c.y * a.x;
     let w = a.x * b.y - a.y * b.x;
     let sum = u + v + w;
     var t = (u * a.z + v * b.z + w * c.z) / sum / component(ray.direction, ray.axes.z);
     if (ray_words[hit.triangle + 1u].w & TRIANGLE_IN_PLANE) != 0u {
-        t = distance_to_plane(hit.city, ray, ray_cities.all[hit.city].boxes + ray_words[hit.triangle + 2u].w, t);
+        t = distance_to_plane(ray, ray_cities.all[hit.city].boxes + ray_words[hit.triangle + 2u].w, t);
     }
     return vec3f(vec2f(v, w) / sum, t);
 }

@@ -11,9 +11,18 @@ const STEP_TEXELS: f32 = 4.0;
 const MOST_STEPS: f32 = 48.0;
 const HALVINGS: u32 = 5u;
 
+struct RaySource {
+    turn_x: vec4f,              // columns of the turn from the picture's view space to its own; near, metres
+    turn_y: vec4f,              // far, metres
+    turn_z: vec4f,              // 1: its rays are parallel
+    texel: vec4f,               // where a place of its picture plane at distance 1 is: scale, offset; texels
+    size: vec2f,                // texels
+    reserved: vec2f,
+}
+
 struct RaySources {
     count: u32,
-    all: array<View, 48>,       // the finest first
+    all: array<RaySource, 48>,  // the finest first
 }
 
 @group(1) @binding(1) var<uniform> ray_sources: RaySources;
@@ -29,28 +38,38 @@ struct Source {
     distance: f32,              // of the place, along the axis of the image, metres
 }
 
+// Where an image shows a place, and whether it does.
+fn place_in(own: RaySource, number: u32, p: vec3f) -> Source {
+    let q = mat3x3f(own.turn_x.xyz, own.turn_y.xyz, own.turn_z.xyz) * p;
+    let across = q.xy / select(-q.z, 1.0, own.turn_z.w != 0.0);
+    let at = across * own.texel.xy + own.texel.zw;
+    let is_in = -q.z > 0.0 && all(at >= vec2f(0.0)) && all(at < own.size);
+    return Source(select(ray_sources.count, number, is_in), at, -q.z);
+}
+
 fn source_of(p: vec3f) -> Source {
-    let world = p * view.view_from_world;
-    var found = Source(ray_sources.count, vec2f(0.0), 1.0);
-    for (var i = 0u; i < ray_sources.count; i++) {
-        let own = ray_sources.all[i];
-        let q = own.view_from_world * world;
-        let across = q.xy / select(-q.z, 1.0, own.orthographic == 1u);
-        let ndc = across * own.projection.xy + own.projection.zw;
-        let at = (0.5 + vec2f(0.5, -0.5) * ndc) * own.size;
-        let is_in = -q.z > 0.0 && all(at >= vec2f(0.0)) && all(at < own.size);
-        if is_in && found.number == ray_sources.count {
-            found = Source(i, at, -q.z);
+    var found = place_in(first_source, 0u, p);
+    for (var i = 1u; i < ray_sources.count; i++) {
+        if found.number == ray_sources.count {
+            found = place_in(ray_sources.all[i], i, p);
         }
     }
     return found;
 }
 
+fn source_at(number: u32) -> RaySource {
+    if number == 0u {
+        return first_source;
+    }
+    return ray_sources.all[number];
+}
+
 // How far along the axis of an image what has this depth is.
-fn source_distance(number: u32, depth: f32) -> f32 {
-    let own = ray_sources.all[number];
-    let far = own.far - depth * (own.far - own.near);
-    return select(select(own.near / depth, FAR_AWAY, depth <= 0.0), select(far, FAR_AWAY, depth <= 0.0), own.orthographic == 1u);
+fn source_distance(own: RaySource, depth: f32) -> f32 {
+    let near = own.turn_x.w;
+    let far = own.turn_y.w;
+    let along = far - depth * (far - near);
+    return select(select(near / depth, along, own.turn_z.w != 0.0), FAR_AWAY, depth <= 0.0);
 }
 
 fn point_at(line: Ray, t: f32) -> vec3f {
@@ -60,8 +79,9 @@ fn point_at(line: Ray, t: f32) -> vec3f {
 // Where on its line, beyond the place at `t`, what the images show there is.
 fn shown_at(line: Ray, t: f32) -> f32 {
     let source = source_of(point_at(line, t));
-    let depth = textureLoad(source_depth, vec2u(source.at), min(source.number, ray_sources.count - 1u), 0);
-    let shown = source_distance(min(source.number, ray_sources.count - 1u), depth);
+    let number = min(source.number, ray_sources.count - 1u);
+    let depth = textureLoad(source_depth, vec2u(max(source.at, vec2f(0.0))), number, 0);
+    let shown = source_distance(source_at(number), depth);
     return select(t * (shown / source.distance), FAR_AWAY, source.number == ray_sources.count || shown >= FAR_AWAY);
 }
 
@@ -78,8 +98,8 @@ fn meeting_of(across: vec2f) -> Meeting {
         return Meeting(path.ray, 1.0);
     }
     let is_flat = view.orthographic == 1u;
-    let first = ray_lenses.along[0].distance;
-    let last = ray_lenses.along[ray_lenses.events - 1u].distance;
+    let first = ray_event(0).distance;
+    let last = ray_event(ray_lenses.events - 1u).distance;
     if shown_at(path.ray, first) <= first {
         return Meeting(path.ray, first);
     }
@@ -113,15 +133,16 @@ fn meeting_of(across: vec2f) -> Meeting {
 // How many times as deep the plane of a flat face is at one place of an image as at another; 1 where it is seen so much edge on that this says
 // nothing.
 fn deepening(number: u32, code: u32, here: f32, from_at: vec2f, to_at: vec2f) -> f32 {
-    let own = ray_sources.all[number];
+    let own = source_at(number);
     let surface = surface_at(code - 1u);
-    let normal = own.view_from_world * decode_normal(surface.normal);
-    let a = from_at * own.across_from_pixel.xy + own.across_from_pixel.zw;
-    let b = to_at * own.across_from_pixel.xy + own.across_from_pixel.zw;
+    let turn = mat3x3f(own.turn_x.xyz, own.turn_y.xyz, own.turn_z.xyz);
+    let normal = turn * (view.view_from_world * decode_normal(surface.normal));
+    let a = (from_at - own.texel.zw) / own.texel.xy;
+    let b = (to_at - own.texel.zw) / own.texel.xy;
     // Of parallel rays it is the distance that grows evenly.
-    let grown = dot(normal.xy, b - a) / normal.z / (own.far - own.near);
+    let grown = dot(normal.xy, b - a) / normal.z / (own.turn_y.w - own.turn_x.w);
     let ratio = dot(normal, vec3f(b, -1.0)) / dot(normal, vec3f(a, -1.0));
-    let found = select(ratio, 1.0 - grown / here, own.orthographic == 1u);
+    let found = select(ratio, 1.0 - grown / here, own.turn_z.w != 0.0);
     let is_flat = (surface.flags & SURFACE_LIT_AS_BEFORE) == 0u;
     return select(1.0, found, is_flat && found > 0.5 && found < 2.0);
 }
@@ -129,7 +150,7 @@ fn deepening(number: u32, code: u32, here: f32, from_at: vec2f, to_at: vec2f) ->
 // The depth at a place of an image: between the middles of texels as that of the plane that they show.
 fn depth_there(number: u32, at: vec2f, code: u32) -> f32 {
     let texel = vec2i(at);
-    let last = vec2i(ray_sources.all[number].size) - 1;
+    let last = vec2i(source_at(number).size) - 1;
     let here = textureLoad(source_depth, texel, number, 0);
     let middle = vec2f(texel) + 0.5;
     let off = at - middle;
@@ -151,10 +172,34 @@ fn depth_there(number: u32, at: vec2f, code: u32) -> f32 {
     return select(here * deepening(number, code, here, middle, at), max(depth, 0.5 * here), is_known);
 }
 
-@vertex
-fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+// The first image, and the only lens where there is one, are carried to fragments: `pass/shade.wgsl` says why.
+struct Place {
+    @builtin(position) at: vec4f,
+    @location(0) @interpolate(flat, either) turn_x: vec4f,
+    @location(1) @interpolate(flat, either) turn_y: vec4f,
+    @location(2) @interpolate(flat, either) turn_z: vec4f,
+    @location(3) @interpolate(flat, either) texel: vec4f,
+    @location(4) @interpolate(flat, either) size: vec2f,
+    //@carried
 }
+
+var<private> first_source: RaySource;
+
+@vertex
+fn vertex(@builtin(vertex_index) i: u32) -> Place {
+    let own = ray_sources.all[0];
+    var place: Place;
+    place.at = vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+    place.turn_x = own.turn_x;
+    place.turn_y = own.turn_y;
+    place.turn_z = own.turn_z;
+    place.texel = own.texel;
+    place.size = own.size;
+    carry(&place);
+    return place;
+}
+
+//@handlers
 
 struct Warped {
     @location(0) code: vec2u,
@@ -165,7 +210,10 @@ struct Warped {
 }
 
 @fragment
-fn warp(@builtin(position) place: vec4f) -> Warped {
+fn warp(in: Place) -> Warped {
+    take_own(in);
+    first_source = RaySource(in.turn_x, in.turn_y, in.turn_z, in.texel, in.size, vec2f(0.0));
+    let place = in.at;
     // Where a lens is that follows rays, they are followed.
     let over = lenses_over(place.xy);
     if (over & ray_lenses.warped) == 0u || (over & ray_lenses.followed) != 0u {
@@ -179,7 +227,7 @@ fn warp(@builtin(position) place: vec4f) -> Warped {
         let code = textureLoad(source_codes, texel, source.number, 0).xy;
         if code.x != 0u {
             let depth = depth_there(source.number, source.at, code.x);
-            let t = met.t * (source_distance(source.number, depth) / source.distance);
+            let t = met.t * (source_distance(source_at(source.number), depth) / source.distance);
             warped.code = select(vec2u(code.x, 0u), code, SMOOTH);
             warped.color = textureLoad(source_colors, texel, source.number, 0);
             warped.depth = depth_of_distance(t);

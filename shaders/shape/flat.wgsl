@@ -24,7 +24,10 @@ fn place_on_figure(ray: Ray, s: Flat) -> vec3f {
 }
 
 fn span_of_flat(ray: Ray, s: Flat) -> Span {
-    let a = place_on_figure(ray, s);
+    return span_at(place_on_figure(ray, s), s);
+}
+
+fn span_at(a: vec3f, s: Flat) -> Span {
     let w = dot(s.weight, a);
     let at = clamp(vec2f(dot(s.x, a), dot(s.y, a)) / w, vec2f(-1e15), vec2f(1e15));
     let enter = clamp(dot(s.depth, a) / w, -FAR_AWAY, FAR_AWAY);
@@ -66,8 +69,9 @@ fn is_behind_plane(sight: Sight, enter: f32, w: f32) -> bool {
 
 // Whether a place at D of the main view's ray is behind a figure, or in its plane; also where nothing is.
 fn flat_holds(s: Flat, sight: Sight) -> bool {
-    let span = span_of_flat(sight.ray, s);
-    let w = dot(s.weight, place_on_figure(sight.ray, s));
+    let a = place_on_figure(sight.ray, s);
+    let span = span_at(a, s);
+    let w = dot(s.weight, a);
     return span.enter <= span.exit && is_behind_plane(sight, span.enter, w);
 }
 
@@ -77,6 +81,25 @@ fn distance_to_sides(first: u32, count: u32, p: vec2f) -> f32 {
         least = min(least, distance_to_segment(p, planes[i].xy, planes[i].zw));
     }
     return select(least, -least, is_in_polygon(first, count, p));
+}
+
+// The map to the figure moves no place of the picture farther than this; where the plane is not met, none within the turn meets it.
+fn flat_is_clear(ray: Ray, s: Flat, turn: f32) -> bool {
+    let a = place_on_figure(ray, s);
+    let w = dot(s.weight, a);
+    let slack = turn * length(s.weight.xy);
+    let at = vec2f(dot(s.x, a), dot(s.y, a)) / w;
+    let moves = (turn * length(vec2f(length(s.x.xy), length(s.y.xy))) + slack * length(at)) / (w - slack);
+    var across = length(at) - s.size.x;
+    if s.figure == POLYGON {
+        across = distance_to_sides(s.first, s.count, at);
+    } else if s.figure == RECTANGLE {
+        let beyond = abs(at) - s.size;
+        across = length(max(beyond, vec2f(0.0))) + min(max(beyond.x, beyond.y), 0.0);
+    }
+    // And what is lost to rounding.
+    let is_met = w > slack && abs(across) > moves + 4e-6 * length(at);
+    return is_met || w < -slack;
 }
 
 // In the figure's plane, across its outline; what is before the plane is outside altogether. In pixels: those of the plane.

@@ -9,6 +9,7 @@ use crate::measure::{
     quantity::Quantity,
     ratio::Estimate,
     run::{Measurement, Row},
+    topic::Slope,
 };
 
 /// Where and how a measurement was made, as far as only the caller knows.
@@ -89,7 +90,7 @@ pub fn markdown(measured: &Measurement, origin: &Origin) -> String {
         false => "Memory is what the targets and lists of a frame take on the graphics card.".to_owned(),
     };
     let against = match measured.rows.iter().any(|row| row.difference.against_f64.is_some()) {
-        _ if topic.slope.is_some() => {
+        true if topic.slope.is_some() => {
             " Errors against f64 are of linear light; the picture's own steps are up to 0.009 of it."
         }
         true => {
@@ -108,16 +109,17 @@ pub fn markdown(measured: &Measurement, origin: &Origin) -> String {
     text
 }
 
-/// With which power of a knob an error falls, for each line of the plot: least squares of the logarithms, of knobs above 1.
+/// With which power of a knob an error falls, for each line of each panel of the plot: least squares of the logarithms.
 fn slopes(measured: &Measurement) -> Vec<(String, String)> {
     let topic = measured.topic;
-    let Some((knob, error)) = topic.slope else { return Vec::new() };
+    let Some(Slope { knob, error, above }) = topic.slope else { return Vec::new() };
     let mut lines: Vec<(String, Vec<[f64; 2]>)> = Vec::new();
     for row in &measured.rows {
-        let names: Vec<String> =
-            topic.series.iter().filter_map(|i| row.knobs.get(*i)).map(|v| format!(", {v}")).collect();
-        let point = [Quantity::Knob(knob).of(row), error.of(row)].map(f64::ln);
-        if !point.iter().all(|v| v.is_finite()) || point[0] <= 0.0 {
+        let told = topic.panels.iter().chain(topic.series).filter_map(|i| row.knobs.get(*i));
+        let names: Vec<String> = told.map(|v| format!(", {v}")).collect();
+        let values = [Quantity::Knob(knob).of(row), error.of(row)];
+        let point = values.map(f64::ln);
+        if !point.iter().all(|v| v.is_finite()) || values[0] <= above {
             continue;
         }
         match lines.iter_mut().find(|(name, _)| *name == names.concat()) {

@@ -42,13 +42,24 @@ pub struct Topic {
     pub panels: Option<usize>,
     /// A knob whose values stand beside the points of lines.
     pub notes: Option<usize>,
-    /// A knob, and an error of which the table says which power of the knob it falls with, for each line of the plot.
-    pub slope: Option<(usize, Quantity)>,
+    /// With which power of a knob an error falls, where the table says it.
+    pub slope: Option<Slope>,
     /// Whether every variant is started on a device of its own. Else nothing is known of its start-up, and its memory is what its
     /// targets and lists take.
     pub restarts: bool,
     /// Makes what is drawn.
     pub make: fn(&mut Stage<'_>) -> Result<Trial, RenderError>,
+}
+
+/// An error that falls with a knob, told for each line of the plot.
+#[derive(Clone, Copy, Debug)]
+pub struct Slope {
+    /// The knob.
+    pub knob: usize,
+    /// The error.
+    pub error: Quantity,
+    /// Values up to this one say nothing of it.
+    pub above: f64,
 }
 
 /// Something that can be turned.

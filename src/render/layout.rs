@@ -401,10 +401,22 @@ const RAY_SOURCES: usize = crate::render::ray_sources::MOST_SOURCES;
 /// `pass/ray-warp.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct RaySource {
+    pub turn_x: [f32; 4],
+    pub turn_y: [f32; 4],
+    pub turn_z: [f32; 4],
+    pub texel: [f32; 4],
+    pub size: [f32; 2],
+    pub reserved: [f32; 2],
+}
+
+/// `pass/ray-warp.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct RaySources {
     pub count: u32,
     pub pad_0: [u32; 3],
-    pub all: [View; RAY_SOURCES],
+    pub all: [RaySource; RAY_SOURCES],
 }
 
 /// `lib/fields.wgsl`: what a ray makes of a field.
@@ -700,8 +712,8 @@ mod tests {
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
-        let rays = Module::Rays(None, crate::shader::Bends { images: 1, planes: 1 });
-        let warp = Module::RayWarp(crate::shader::Bends { images: 1, planes: 1 });
+        let rays = Module::Rays(None, crate::shader::Bends { images: 1, planes: 1, grids: false });
+        let warp = Module::RayWarp(crate::shader::Bends { images: 1, planes: 1, grids: false });
         let fields = Module::Composite(Program::Specialised(Plan { fields: true, ..Plan::default() }));
         let checks = [
             (
@@ -799,10 +811,23 @@ mod tests {
                 }),
             ),
             (&rays, host!(RayEvent { distance, lens, ends, reserved })),
+            (&warp, host!(RaySource { turn_x, turn_y, turn_z, texel, size, reserved })),
             (&warp, host!(RaySources { count, pad_0, all })),
             (
                 &rays,
-                host!(RayLenses { images, planes, events, stretch, followed, warped, moved, pad_0, lenses, along, knots }),
+                host!(RayLenses {
+                    images,
+                    planes,
+                    events,
+                    stretch,
+                    followed,
+                    warped,
+                    moved,
+                    pad_0,
+                    lenses,
+                    along,
+                    knots
+                }),
             ),
             (
                 &rays,

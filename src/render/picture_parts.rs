@@ -30,7 +30,7 @@ pub(super) struct FilterParts {
 pub(super) struct PictureParts {
     /// The triangles.
     pub mesh: Mesh,
-    /// Outside of where lenses may be seen, and there.
+    /// Outside of where lenses may be seen and rays bent, and there.
     pub outside: Vec<Piece>,
     pub inside: Vec<Piece>,
     /// Of each filter.
@@ -38,10 +38,17 @@ pub(super) struct PictureParts {
 }
 
 impl PictureParts {
-    /// Those of a picture of this size; `looked_at`: the lenses, ascending, of those seen that do anything to how places look.
-    pub fn new(seen: &[SeenVolume], looked_at: &[u32], filters: &[Filter], size: [u32; 2]) -> Self {
+    /// Those of a picture of this size; `looked_at`: the lenses, ascending, of those seen that do anything to how places look; `bent`: where rays may be.
+    pub fn new(
+        seen: &[SeenVolume],
+        looked_at: &[u32],
+        bent: Option<ScreenBound>,
+        filters: &[Filter],
+        size: [u32; 2],
+    ) -> Self {
         let (mut mesh, whole) = (Mesh::default(), PictureTile::whole(size));
-        let [outside, inside] = match part_of(seen.iter().filter(|v| looked_at.binary_search(&v.lens).is_ok())) {
+        let of_lenses = part_of(seen.iter().filter(|v| looked_at.binary_search(&v.lens).is_ok()));
+        let [outside, inside] = match of_lenses.into_iter().chain(bent).reduce(ScreenBound::with) {
             Some(part) => [vec![(mesh.add_beyond(part, size), whole)], mesh.add(part, size, [1, 1])],
             None => [vec![(mesh.all(), whole)], Vec::new()],
         };

@@ -7,6 +7,7 @@ use crate::{
     city::ground::Fade,
     render::{
         bake::{self, BakeRequest},
+        bent,
         cells::Details,
         city_facts::{CityFacts, SectionFacts},
         cut::{Cuts, Lit},
@@ -171,6 +172,7 @@ impl<'a> FramePlan<'a> {
         let file_words = own_sprites.note_made(is_needed);
         let own_sprites: &OwnSprites = own_sprites;
         let has_sections = section_rounds::are_asked_for(input);
+        let bent = bent::bound(input.rays, &input.view, input.tile);
         Self {
             settings,
             adapter,
@@ -189,7 +191,7 @@ impl<'a> FramePlan<'a> {
             radius: light::radius_of(&if facts.bounds.is_empty() { input.fields.bounds() } else { facts.bounds }),
             fade: facts.fade,
             numbers: LensNumbers::new(input, &seen.volumes, &requests, own_sprites),
-            parts: PictureParts::new(&seen.volumes, &plans.looked_at, &plans.filters, input.tile.size),
+            parts: PictureParts::new(&seen.volumes, &plans.looked_at, bent, &plans.filters, input.tile.size),
             light,
             sun,
             sky,

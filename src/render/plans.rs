@@ -70,7 +70,9 @@ impl Plans {
             let each = volumes.iter().map(|v| input.volumes[v.index].room(&input.view));
             each.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]).unwrap_or([DVec3::NEG_INFINITY, DVec3::INFINITY])
         };
-        let (context, mut lenses) = (context.shading(handlers()), lenses.shading(handlers()));
+        let context = context.shading(handlers());
+        // Where rays are bent and no lens is seen, it is the same.
+        let mut lenses = if seen.is_empty() { context.clone() } else { lenses.shading(handlers()) };
         let has_passes = input.technique.has_passes() && !seen.is_empty();
         let regions = has_passes.then(|| RegionPasses::new(input, seen, &lenses, &numbers));
         if input.technique == Technique::Branches && !seen.is_empty() {

@@ -8,7 +8,7 @@ use crate::{
 /// What the passes of a frame run.
 #[derive(Clone, Debug)]
 pub(super) struct Programs {
-    /// Shading outside the lenses' bounds, and inside.
+    /// Shading outside of where lenses are and rays are bent, and inside.
     pub context: Program,
     pub lenses: Program,
     /// What hides something in the picture, and from the sun, where something may be hidden in this frame.
@@ -40,7 +40,7 @@ impl Programs {
         let picture = cuts.picture.as_ref().map(|cut| program(&cut.plan));
         let sun = cuts.sun.as_ref().map(|cut| program(&cut.plan));
         Self {
-            context: program(&plans.context),
+            context: program(&plans.context).with_straight_rays(),
             lenses: program(&plans.lenses),
             made_for_picture: picture.clone(),
             made_for_sun: sun.clone(),
@@ -64,7 +64,7 @@ impl Programs {
         let layering = input.operations.uber_layering(haze, masks, clear_materials);
         let layering = layering.filter(|_| plans.layering.is_some());
         Self {
-            context: shading.clone(),
+            context: shading.clone().with_straight_rays(),
             lenses: shading,
             picture: cuts.picture.as_ref().and(picture.clone()),
             sun: cuts.sun.as_ref().and(sun.clone()),

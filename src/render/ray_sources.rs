@@ -16,7 +16,7 @@ use crate::{
         ray::{FisheyeProjection, RayMethod, RayOutline},
         ray_path::{ImageBend, PathPiece, RayPaths, Rim},
     },
-    render::{bent, eye::PictureTile},
+    render::{bent, eye::PictureTile, layout},
     view::{Basis, Camera, Projection, View},
 };
 
@@ -50,6 +50,28 @@ impl RaySource {
     /// Whether its axes are those of the picture.
     pub fn is_turned(&self, view: &View) -> bool {
         self.view.basis != view.basis
+    }
+
+    /// As pixels look into it, where its own view is this one for the shaders.
+    pub fn row(&self, own: &layout::View, view: &View) -> layout::RaySource {
+        let turn = self.view.basis.view_from_world() * view.basis.view_from_world().transpose();
+        let column = |axis: DVec3, w: f32| axis.as_vec3().extend(w).to_array();
+        let [width, height] = self.tile.size.map(|side| side as f32);
+        let [scale_x, scale_y, offset_x, offset_y] = own.projection;
+        layout::RaySource {
+            turn_x: column(turn.x_axis, own.near),
+            turn_y: column(turn.y_axis, own.far),
+            turn_z: column(turn.z_axis, own.orthographic as f32),
+            // Rows go down.
+            texel: [
+                0.5 * scale_x * width,
+                -0.5 * scale_y * height,
+                0.5 * (1.0 + offset_x) * width,
+                0.5 * (1.0 - offset_y) * height,
+            ],
+            size: [width, height],
+            reserved: [0.0; 2],
+        }
     }
 }
 

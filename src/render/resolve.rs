@@ -176,7 +176,11 @@ impl Surroundings<'_> {
             let farthest = all.corners().map(|corner| corner.distance(camera.eye)).into_iter().fold(0.0, f64::max);
             view.far_m = view.far_m.max(1.001 * farthest + 1.0);
         }
-        operations.bend_rays(Bends { images: rays.images.len() as u32, planes: rays.planes.len() as u32 });
+        operations.bend_rays(Bends {
+            images: rays.images.len() as u32,
+            planes: rays.planes.len() as u32,
+            grids: rays.rims().any(|rim| rim.grid.is_some()),
+        });
         if !fields.is_empty() {
             operations.add_fields();
         }

@@ -3,19 +3,25 @@
 use crate::shader::{
     carried::{self, Carried},
     effect::definition::EffectDefinition,
-    plan::program::Program,
+    plan::{Bends, program::Program},
     shading::Shading,
     specialised, uber,
 };
 
 /// Shading written out, with what is carried for it. `names` of a plan's lenses become comments.
 pub(super) fn shading(program: &Program, handlers: &[EffectDefinition], names: &[&str], pass: &Shading) -> Carried {
+    let room = pass.room.unwrap_or_default();
+    // Modules that carry nothing bend no rays.
+    let bends = if pass.room.is_some() { program.has().bends } else { Bends::default() };
     let (own, of_scene) = match program {
         Program::Specialised(plan) => {
-            let own = pass.room.map_or_else(carried::nothing, |room| carried::of_plan(plan, handlers, room));
+            let own = match pass.room {
+                Some(room) => carried::of_plan(plan, handlers, room),
+                None => carried::nothing(bends, room),
+            };
             (own, specialised::source(plan, handlers, names, pass))
         }
-        Program::Uber(uber) => (carried::nothing(), uber::source(uber, handlers, pass)),
+        Program::Uber(uber) => (carried::nothing(bends, room), uber::source(uber, handlers, pass)),
     };
     Carried { functions: own.functions + &of_scene, ..own }
 }

@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 use crate::shader::{
     effect::{definition::EffectDefinition, prototype::EffectKind},
     forms::rows_of,
-    plan::Plan,
+    plan::{Bends, Plan},
+    rays,
 };
 
 /// How many vectors `pass/shade.wgsl` itself carries.
@@ -39,9 +40,17 @@ pub(super) struct Carried {
     pub(super) functions: String,
 }
 
-/// Where nothing of the scene is carried.
-pub(super) fn nothing() -> Carried {
-    carried(Vec::new(), 0)
+/// Where nothing of the scene is carried, but for the only lens that bends rays.
+pub(super) fn nothing(bends: Bends, room: u32) -> Carried {
+    carried(Vec::new(), room.saturating_sub(FIRST), bends)
+}
+
+/// The only lens that bends rays, behind so many vectors.
+pub(super) fn of_lens(bends: Bends, first: u32) -> Carried {
+    let has_lens = bends.is_one();
+    let [members, filled, taken] = if has_lens { rays::carried(first) } else { Default::default() };
+    let carry = format!("fn carry(corner: ptr<function, Place>) {{\n{filled}}}");
+    Carried { members, functions: format!("{carry}\n\nfn take_own(in: Place) {{\n{taken}}}\n\n") }
 }
 
 /// The parameters of a filter's kernel, which stand from `first` on.
@@ -79,7 +88,7 @@ pub(super) fn of_plan(plan: &Plan, handlers: &[EffectDefinition], room: u32) -> 
             })),
         }
     }
-    carried(items, room.saturating_sub(FIRST) as usize)
+    carried(items, room.saturating_sub(FIRST), plan.bends)
 }
 
 /// The parameters' slots that a plan reads, and how many numbers of each, at most 4.
@@ -102,7 +111,16 @@ fn slots_read(plan: &Plan, handlers: &[EffectDefinition]) -> Vec<(u32, usize)> {
     slots
 }
 
-fn carried(items: Vec<Item>, room: usize) -> Carried {
+fn carried(items: Vec<Item>, room: u32, bends: Bends) -> Carried {
+    let has_lens = bends.is_one();
+    let carries_lens = has_lens && room >= rays::CARRIED_VECTORS;
+    let [lens_members, lens_filled, lens_taken] = match carries_lens {
+        true => rays::carried(FIRST),
+        false if has_lens => [String::new(), String::new(), rays::TAKEN_FROM_UNIFORM.to_owned()],
+        false => Default::default(),
+    };
+    let of_lens = if carries_lens { rays::CARRIED_VECTORS } else { 0 };
+    let (first, room) = (FIRST + of_lens, (room - of_lens) as usize);
     // First fit: a sphere is one vector, and so are four numbers of four effects.
     let mut vectors: Vec<(usize, Vec<Item>)> = Vec::new();
     let mut left = Vec::new();
@@ -116,11 +134,11 @@ fn carried(items: Vec<Item>, room: usize) -> Carried {
             None => left.push(item),
         }
     }
-    let mut members = String::new();
-    let mut carry = "fn carry(corner: ptr<function, Corner>) {\n".to_owned();
-    let mut take = "fn take_own(in: Corner) {\n".to_owned();
+    let mut members = lens_members;
+    let mut carry = format!("fn carry(corner: ptr<function, Corner>) {{\n{lens_filled}");
+    let mut take = format!("fn take_own(in: Corner) {{\n{lens_taken}");
     for (i, (width, held)) in vectors.iter().enumerate() {
-        let _ = writeln!(members, "    @location({}) @interpolate(flat, either) own_{i}: vec4f,", FIRST as usize + i);
+        let _ = writeln!(members, "    @location({}) @interpolate(flat, either) own_{i}: vec4f,", first as usize + i);
         let given: Vec<String> = held.iter().map(|item| format!("{}_uniform{}", item.array, item.place)).collect();
         let _ = writeln!(carry, "    (*corner).own_{i} = vec4f({}{});", given.join(", "), ", 0.0".repeat(4 - width));
         let mut at = 0;

@@ -67,7 +67,7 @@ impl Forward {
         let shade = SHADE.changed(|text| without_entry(text, "vertex", "corner_of"));
         let text = Template::of_files(&files::of_shading(&self.shading, handlers))
             .then(Template::below_path(SHADE.path, &shade))
-            .fill("ray", rays::source(Bends::default()))
+            .fill("ray", rays::source(Bends::default(), false))
             .fill("snapping", adapter.snapping())
             .fill("carried", own.members)
             .fill("handlers", own.functions + &opacity)

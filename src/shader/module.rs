@@ -16,9 +16,9 @@ use crate::{
             AMBIENT_OCCLUSION, BARE, BENT_EDGES, BENT_RAYS, CLASS, COMBINED, COMBINED_PASS, COMPOSITE, COUNT_LAYERS,
             CROSSING, CUT, DEFORM, DEPTH_CODE, FACADE, FILTER, FORM, FRAGMENT_NODES, FURNITURE, FURNITURE_OVER, File,
             GEOMETRY, HELD, HELD_LAYERS, HOLE, LAYER_NODES, LAYERS, LINK_SLOTS, NARROW, OBJECTS, ONE_CITY, PACKED,
-            RAY_GRID, RAY_IMAGES, RAY_LAYERS, RAY_VERTICES, RAY_WALK, RAY_WARP, RAYS, REFINE, REGION, REGIONS, RESOLVE, SHADE,
-            SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM, STORED_LAYERS,
-            STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
+            RAY_GRID, RAY_IMAGES, RAY_LAYERS, RAY_VERTICES, RAY_WALK, RAY_WARP, RAYS, REFINE, REGION, REGIONS, RESOLVE,
+            SHADE, SHADOW, SHADOW_CUT, SHOWN, SIGHT, SLOTS, SORT_LAYERS, SPRITE, SPRITE_LIST, STORED_FORM,
+            STORED_LAYERS, STORED_PASS, SURFACE, TEXEL, TRANSLUCENT, VIEW, VIEW_UNIFORM,
         },
         lining,
         plan::{Bends, Plan, form::Form, lens_test::LensTest, program::Program},
@@ -117,14 +117,17 @@ impl Module {
         if self.bends().is_any() {
             files.push(BENT_RAYS);
             files.extend(matches!(self, Self::Lines(_) | Self::RayVertices(..)).then_some(BENT_EDGES));
-            files.extend(matches!(self, Self::Shade(_) | Self::Composite(_)).then_some(RAY_GRID));
+            let shades = matches!(self, Self::Shade(_) | Self::Composite(_));
+            files.extend((shades && self.bends().grids).then_some(RAY_GRID));
         }
         let text = Template::of_files(&files);
         let text = match files.contains(&VIEW) {
-            true => text.fill("ray", rays::source(self.bends())).fill("snapping", adapter.snapping()),
+            true => {
+                text.fill("ray", rays::source(self.bends(), self.carries_lens())).fill("snapping", adapter.snapping())
+            }
             false => text,
         };
-        let hidden = |program, eye| hiding::source(program, handlers, lenses, eye);
+        let hidden = |program: &Program, eye| hiding::source(program, handlers, lenses, eye);
         let filled = match self {
             Self::CombinedSprite(leaves) | Self::StoredLayers(leaves) => {
                 return text.text() + &Forms::of_leaves(leaves).functions();
@@ -181,11 +184,33 @@ impl Module {
                 let own = plan.regions.as_ref().map(|regions| regions::marks(plan, regions, lenses));
                 text.fill("handlers", own.unwrap_or_default())
             }
+            Self::Rays(..) | Self::RayVertices(..) | Self::RayWarp(_) | Self::RayImages(_) | Self::RayLayers(_) => {
+                self.rays_filled(text, &hidden)
+            }
+            Self::Shadow(Some(program)) => text.fill("handlers", hidden(program, Eye::Sun)),
+            Self::Filter(effect) => {
+                let filter = &handlers[*effect as usize];
+                let own = carried::of_filter(filter);
+                text.fill("carried", own.members).fill("handlers", own.functions + &specialised::kernel(filter))
+            }
+            _ => text,
+        };
+        filled.text()
+    }
+
+    /// The text of a module of bent rays; `hidden`: what is hidden from an eye.
+    fn rays_filled<'a>(&self, text: Template<'a>, hidden: &dyn Fn(&Program, Eye) -> String) -> Template<'a> {
+        match self {
             Self::Rays(program, _) | Self::RayVertices(program, _) => {
                 let asked = program.as_ref().map(|p| (hidden(p, Eye::Rays), p.has().has_cities()));
                 text.fill("handlers", followed::source(asked))
                     .fill("met", followed::FIRST)
                     .fill("bindings", followed::LAST_GROUP)
+            }
+            Self::RayWarp(bends) => {
+                const FIRST: u32 = 5;
+                let own = carried::of_lens(*bends, FIRST);
+                text.fill("carried", own.members).fill("handlers", own.functions)
             }
             Self::RayImages(_) => text
                 .fill("handlers", followed::source(None))
@@ -199,15 +224,8 @@ impl Module {
                     .fill("bindings", followed::LAST_GROUP)
                     .leave("elsewhere")
             }
-            Self::Shadow(Some(program)) => text.fill("handlers", hidden(program, Eye::Sun)),
-            Self::Filter(effect) => {
-                let filter = &handlers[*effect as usize];
-                let own = carried::of_filter(filter);
-                text.fill("carried", own.members).fill("handlers", own.functions + &specialised::kernel(filter))
-            }
             _ => text,
-        };
-        filled.text()
+        }
     }
 
     /// Whether its rays are those that lenses bend.
@@ -218,9 +236,16 @@ impl Module {
             | Self::Layers(program, _)
             | Self::RayLayers(program)
             | Self::Lines(program) => program.has().bends,
-            Self::Rays(_, bends) | Self::RayVertices(_, bends) | Self::RayImages(bends) | Self::RayWarp(bends) => *bends,
+            Self::Rays(_, bends) | Self::RayVertices(_, bends) | Self::RayImages(bends) | Self::RayWarp(bends) => {
+                *bends
+            }
             _ => Bends::default(),
         }
+    }
+
+    /// Whether the only lens that bends rays is carried to fragments.
+    fn carries_lens(&self) -> bool {
+        matches!(self, Self::Shade(_) | Self::Composite(_) | Self::RayWarp(_))
     }
 
     /// What it has besides where triangles hold their depth.
@@ -238,9 +263,7 @@ impl Module {
             Self::Geometry(None) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, GEOMETRY],
             Self::RayImages(_) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAY_IMAGES],
             Self::RayWarp(_) => &[VIEW, VIEW_UNIFORM, SURFACE, RAY_WARP],
-            Self::RayVertices(None, _) => {
-                &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAY_VERTICES]
-            }
+            Self::RayVertices(None, _) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAY_VERTICES],
             Self::RayVertices(Some(program), _) => {
                 return files::of_city(program, &[FACADE, RAY_WALK, RAY_VERTICES]);
             }

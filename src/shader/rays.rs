@@ -10,15 +10,82 @@ use crate::shader::{
 
 /// The filling of the hook `ray` (`lib/view.wgsl`): `ray_of_pixel`, and `see_pixel`, which is told before which pixel is looked at, and how far; of rays
 /// that are bent `lib/bent-rays.wgsl` has both.
-pub(super) fn source(bends: Bends) -> String {
+pub(super) fn source(bends: Bends, is_carried: bool) -> String {
     if bends.is_any() {
-        return format!("const RAY_IMAGES: u32 = {}u;\nconst RAY_PLANES: u32 = {}u;\n", bends.images, bends.planes);
+        let Bends { images, planes, grids } = bends;
+        let lenses = if is_carried && bends.is_one() { CARRIED } else { IN_UNIFORM };
+        let grids = if grids { "" } else { NO_GRIDS };
+        return format!("const RAY_IMAGES: u32 = {images}u;\nconst RAY_PLANES: u32 = {planes}u;\n{lenses}{grids}");
     }
     let own = handlers().iter().find(|h| (h.kind, h.mode) == (EffectKind::Ray, Mode::Optional));
     let Some(own) = own else { unreachable!("the program has a ray of its own") };
     let name = own.wgsl_name();
-    format!("{}\nfn ray_of_pixel(pixel: vec2f) -> Ray {{\n    return {name}(pixel);\n}}\n{STRAIGHT}", own.source)
+    format!(
+        "{}\nfn ray_of_pixel(pixel: vec2f) -> Ray {{\n    return {name}(pixel);\n}}\n{STRAIGHT}{NO_GRIDS}",
+        own.source
+    )
 }
 
+/// Where no lens has a grid.
+const NO_GRIDS: &str = "\nfn gridded(paint: vec4f, pixel: vec2i) -> vec4f {\n    return paint;\n}\n";
+
+/// Lenses, and what happens along the view axis, where several are, or fragments read uniforms where they stand.
+const IN_UNIFORM: &str = "
+fn ray_lens(number: u32) -> RayLens {
+    return ray_lenses.lenses[number];
+}
+
+fn ray_event(number: u32) -> RayEvent {
+    return ray_lenses.along[number];
+}
+
+fn take_ray_lens(a: vec4f, b: vec4f, c: vec4f, d: vec4u) {}
+";
+
+/// One lens that is carried to fragments: `pass/shade.wgsl` says why. Its plane is met, and then the ray goes on.
+const CARRIED: &str = "
+var<private> only_ray_lens: RayLens;
+
+fn ray_lens(number: u32) -> RayLens {
+    return only_ray_lens;
+}
+
+fn ray_event(number: u32) -> RayEvent {
+    return RayEvent(select(only_ray_lens.distance, only_ray_lens.until, number == 1u), RAY_IMAGES, number, 0u);
+}
+
+fn take_ray_lens(a: vec4f, b: vec4f, c: vec4f, d: vec4u) {
+    only_ray_lens = RayLens(a.xy, a.z, a.w, b.x, b.y, b.z, d.x, d.y, d.z, d.w, b.w, c.xyz, c.w);
+}
+";
+
+/// Vectors that a lens takes where it is carried.
+pub(super) const CARRIED_VECTORS: u32 = 4;
+
+/// Members of a struct that is handed to fragments, from that location on; what fills them in a vertex shader; what takes them.
+pub(super) fn carried(first: u32) -> [String; 3] {
+    let kinds = ["vec4f", "vec4f", "vec4f", "vec4u"];
+    let member = |(i, (kind, name)): (u32, (&str, char))| {
+        format!("    @location({}) @interpolate(flat, either) ray_{name}: {kind},\n", first + i)
+    };
+    let members = (0..).zip(kinds.into_iter().zip('a'..)).map(member).collect();
+    [members, FILLED.to_owned(), "    take_ray_lens(in.ray_a, in.ray_b, in.ray_c, in.ray_d);\n".to_owned()]
+}
+
+const FILLED: &str = "    let ray_lens_0 = ray_lenses.lenses[0];
+    (*corner).ray_a = vec4f(ray_lens_0.center, ray_lens_0.radius, ray_lens_0.border);
+    (*corner).ray_b = vec4f(ray_lens_0.distance, ray_lens_0.until, ray_lens_0.power, ray_lens_0.angle);
+    (*corner).ray_c = vec4f(ray_lens_0.color, ray_lens_0.grid);
+    (*corner).ray_d = vec4u(ray_lens_0.kind, ray_lens_0.outline, ray_lens_0.first_knot, ray_lens_0.knots);
+";
+
+/// The same where there is no room to carry it.
+pub(super) const TAKEN_FROM_UNIFORM: &str = "    let ray_lens_0 = ray_lenses.lenses[0];
+    take_ray_lens(vec4f(ray_lens_0.center, ray_lens_0.radius, ray_lens_0.border),
+                  vec4f(ray_lens_0.distance, ray_lens_0.until, ray_lens_0.power, ray_lens_0.angle),
+                  vec4f(ray_lens_0.color, ray_lens_0.grid),
+                  vec4u(ray_lens_0.kind, ray_lens_0.outline, ray_lens_0.first_knot, ray_lens_0.knots));
+";
+
 /// Rays that are not bent are the same all along.
-const STRAIGHT: &str = "\n// (x, y, -1) for parallel rays, too.\nfn picture_place(ray: Ray) -> vec3f {\n    return ray.origin + ray.direction;\n}\n\nfn picture_place_at(distance: f32, place: vec3f) -> vec3f {\n    return place;\n}\n\nfn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {\n    return ray_of_pixel(pixel);\n}\n\nfn line_ends(distance: f32) -> f32 {\n    return FAR_AWAY;\n}\n\nfn see_pixel(pixel: vec2f, distance: f32) {}\n\nfn gridded(paint: vec4f, pixel: vec2i) -> vec4f {\n    return paint;\n}\n\nfn most_stretch(pixel: vec2f, reach: f32) -> f32 {\n    return 1.0;\n}\n";
+const STRAIGHT: &str = "\n// (x, y, -1) for parallel rays, too.\nfn picture_place(ray: Ray) -> vec3f {\n    return ray.origin + ray.direction;\n}\n\nfn picture_place_at(distance: f32, place: vec3f) -> vec3f {\n    return place;\n}\n\nfn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {\n    return ray_of_pixel(pixel);\n}\n\nfn line_ends(distance: f32) -> f32 {\n    return FAR_AWAY;\n}\n\nfn see_pixel(pixel: vec2f, distance: f32) {}\n\nfn most_stretch(pixel: vec2f, reach: f32) -> f32 {\n    return 1.0;\n}\n";

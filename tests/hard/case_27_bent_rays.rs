@@ -237,7 +237,7 @@ fn fisheye(angle_deg: f64, projection: FisheyeProjection) -> Lens {
 }
 
 /// Lenses of every kind.
-fn all() -> Vec<Lens> {
+pub fn all() -> Vec<Lens> {
     let square = RayLens { outline: RayOutline::Square, ..magnify(3.0, 120.0, 90.0, 0.3) };
     let aside = RayLens { center: DVec2::new(0.35, 0.6), radius: 0.3, ..magnify(5.0, 60.0, 140.0, 0.5) };
     let drawn = [[0.0, 3.0], [0.3, 3.0], [0.6, 1.0], [1.0, 1.5]].map(DVec2::from).to_vec();
@@ -305,7 +305,7 @@ impl Sight {
     }
 }
 
-fn draw(studio: &mut Studio, scene: &Scene, size: [u32; 2], backend: Backend) -> Picture {
+pub fn draw(studio: &mut Studio, scene: &Scene, size: [u32; 2], backend: Backend) -> Picture {
     let aovs = Aovs { depth: true, object_id: true, ..Aovs::default() };
     studio.render(scene, &Request { aovs, backend, ..Request::plain(size) }).expect("a picture")
 }

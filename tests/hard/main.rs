@@ -44,6 +44,7 @@ mod case_23_jitter;
 mod case_24_combinations;
 mod case_25_volumes;
 mod case_27_bent_rays;
+mod case_27_methods;
 mod deformed;
 mod large_cities;
 mod lenses;

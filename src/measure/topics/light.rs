@@ -7,7 +7,7 @@ use crate::{
         light_by_rays::LightByRays,
         quantity::Quantity,
         stage::Stage,
-        topic::{Exact, Knob, Topic, Trial, Value, Variant},
+        topic::{Exact, Knob, Slope, Topic, Trial, Value, Variant},
     },
     render::picture::RenderError,
     scene::{Scene, Sun},
@@ -33,7 +33,7 @@ pub const TOPIC: Topic = Topic {
     series: &[0],
     panels: None,
     notes: Some(1),
-    slope: Some((1, Quantity::RmsError)),
+    slope: Some(Slope { knob: 1, error: Quantity::RmsError, above: 1.0 }),
     restarts: false,
     make,
 };

@@ -4,6 +4,7 @@ pub mod gpu;
 mod handlers;
 mod lens_tests;
 mod light;
+mod ray_lenses;
 mod refinement;
 mod samples;
 mod sprites;
@@ -17,6 +18,7 @@ pub const TOPICS: &[Topic] = &[
     handlers::TOPIC,
     lens_tests::TOPIC,
     light::TOPIC,
+    ray_lenses::TOPIC,
     refinement::TOPIC,
     samples::TOPIC,
     sprites::TOPIC,

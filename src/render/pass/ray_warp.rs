@@ -20,7 +20,9 @@ use crate::{
         programs::Programs,
         ray_sources::{MOST_SOURCES, RaySource, sources},
         resource::{
-            bindings::{GroupLayout, LAYERED_DEPTHS, LAYERED_FLOATS, LAYERED_NUMBERS, NUMBERS, UNIFORM, group, whole},
+            bindings::{
+                DRAWN, GroupLayout, LAYERED_DEPTHS, LAYERED_FLOATS, LAYERED_NUMBERS, NUMBERS, UNIFORM, group, whole,
+            },
             formats::{COLORS, DEPTH, EMISSIONS, OWN_DEPTH, codes},
             key::{Draw, Parts, PipelineKey, Stage, depth_test, flag, words},
             layouts::{CUT_CITY, LENSES, VIEW},
@@ -39,7 +41,7 @@ static SOURCES: GroupLayout = GroupLayout {
     label: "images of what the eye sees",
     entries: &[
         (0, S::FRAGMENT, NUMBERS),
-        (1, S::FRAGMENT, UNIFORM),
+        (1, DRAWN, UNIFORM),
         (2, S::FRAGMENT, LAYERED_NUMBERS),
         (3, S::FRAGMENT, LAYERED_DEPTHS),
         (4, S::FRAGMENT, LAYERED_FLOATS),
@@ -287,7 +289,7 @@ impl Pass for RayWarp {
         let mut uniform: layout::RaySources = bytemuck::Zeroable::zeroed();
         uniform.count = sources.len() as u32;
         for ((eye, source), slot) in kept.eyes.iter_mut().zip(sources).zip(&mut uniform.all) {
-            *slot = eye.fit(stage, source)?;
+            *slot = source.row(&eye.fit(stage, source)?, &stage.plan.input.view);
         }
         kept.uniform.sync(stage.gpu, &[uniform])?;
         self.0 = Some(kept);

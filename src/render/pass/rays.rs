@@ -33,8 +33,7 @@ use crate::{
 };
 
 /// Group 3: cities, and the triangles of their meshes.
-pub static RAYS: GroupLayout =
-    GroupLayout { label: "rays", entries: &[(0, DRAWN, UNIFORM), (1, DRAWN, STORAGE)] };
+pub static RAYS: GroupLayout = GroupLayout { label: "rays", entries: &[(0, DRAWN, UNIFORM), (1, DRAWN, STORAGE)] };
 
 /// What is drawn of lenses that bend rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -338,11 +337,9 @@ impl Pass for Rays {
         ];
         let asked = steps.into_iter().filter(|(_, is_asked)| *is_asked);
         keys.add_programs(24, asked.map(|(step, _)| RayKey::new(plan, programs, step)));
-        if parts.draws() {
-            if has_images(plan) {
-                let emits = [false, true].into_iter().filter(|emits| !emits || plan.texels_emit);
-                keys.add(24, emits.map(|emits| RayImageKey::new(plan, emits)));
-            }
+        if parts.draws() && has_images(plan) {
+            let emits = [false, true].into_iter().filter(|emits| !emits || plan.texels_emit);
+            keys.add(24, emits.map(|emits| RayImageKey::new(plan, emits)));
         }
     }
 

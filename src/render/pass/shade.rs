@@ -205,9 +205,9 @@ pub fn target_of<'a>(frame: &FrameContext<'a>) -> &'a Target {
     if frame.plan.input.is_summed() { &frame.targets.sums } else { &frame.targets.picture }
 }
 
-/// Whether lenses are shaded by this pass, and not region by region.
+/// Whether some of the picture is shaded with lenses or bent rays by this pass, and not region by region.
 fn shades_lenses(plan: &FramePlan) -> bool {
-    !plan.plans.looked_at.is_empty() && plan.plans.regions.is_none()
+    !(plan.plans.looked_at.is_empty() && plan.input.rays.is_empty()) && plan.plans.regions.is_none()
 }
 
 /// What the pass keeps.

@@ -34,12 +34,19 @@ pub struct Bends {
     pub images: u32,
     /// Those with planes.
     pub planes: u32,
+    /// Whether some of them have grids.
+    pub grids: bool,
 }
 
 impl Bends {
     /// Whether there are any.
     pub fn is_any(self) -> bool {
         self.images + self.planes > 0
+    }
+
+    /// Whether there is one alone.
+    pub fn is_one(self) -> bool {
+        self.images + self.planes == 1
     }
 }
 

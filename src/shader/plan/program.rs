@@ -15,6 +15,15 @@ pub enum Program {
 }
 
 impl Program {
+    /// The same where no ray is bent.
+    pub fn with_straight_rays(mut self) -> Self {
+        match &mut self {
+            Self::Specialised(plan) => plan.bends = Bends::default(),
+            Self::Uber(uber) => uber.bends = Bends::default(),
+        }
+        self
+    }
+
     /// How it tells regions apart, if it does.
     pub fn regions(&self) -> Option<&Regions> {
         match self {
