@@ -2,6 +2,8 @@
 //!
 //! One module per room below `tests/data/`; each gives its trials, which are made even without the data.
 
+#[path = "data/bent_rays.rs"]
+mod bent_rays;
 #[path = "data/best_views.rs"]
 mod best_views;
 #[path = "data/compare.rs"]
@@ -71,6 +73,7 @@ fn trial(name: &str, run: impl FnOnce(PathBuf) -> Result<(), Failed> + Send + 's
 fn main() {
     let arguments = Arguments::from_args();
     let rooms = [
+        bent_rays::trials(),
         best_views::trials(),
         compare::trials(),
         derived::trials(),

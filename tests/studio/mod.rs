@@ -1,6 +1,7 @@
 //! What tests that draw share: a studio over files or over the synthetic city, and lenses by one line.
 #![allow(dead_code, reason = "every test binary uses its own part")]
 
+pub mod bent;
 pub mod by_rays;
 pub mod random_scene;
 pub mod volumes;

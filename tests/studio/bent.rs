@@ -1,0 +1,398 @@
+//! A slow ray caster for lenses that bend rays: per pixel the path of Wang et al.'s own equations in f64, and all triangles of the objects whose boxes it meets.
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use veduta::{
+    lens::{
+        Lens, LensBody, LensKind,
+        kind::{FisheyeLens, Magnifier, SamplingLens},
+        ray::{Bend, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate},
+    },
+    render::{
+        frame::Backend,
+        picture::{Aovs, Picture, Request, Studio},
+    },
+    scene::Scene,
+    view::{Camera, Projection, View},
+};
+
+use crate::studio;
+
+/// How far from an edge's image an object may be another one, pixels.
+pub const BESIDE_PX: f64 = 1e-3;
+/// How far depths may be outside of those that the rays around have, of themselves: what f32 rounds of places and slopes.
+pub const DEPTH_OFF: f64 = 2e-6;
+
+/// A lens of the reference, as the equations have it.
+#[derive(Clone, Debug)]
+pub struct Bent {
+    center: DVec2,
+    radius: f64,
+    is_square: bool,
+    what: What,
+}
+
+#[derive(Clone, Debug)]
+enum What {
+    /// Equation 1: a plane at `z_l`, its focal point at `f` behind it, a border, and the depth from which on rays go as the eye sees.
+    Magnifier {
+        z_l: f64,
+        f: f64,
+        border: f64,
+        z_m: f64,
+    },
+    /// Equation 3.
+    Sampling(SamplingRate),
+    Fisheye(f64, FisheyeProjection),
+}
+
+impl Bent {
+    /// That of a lens whose distances are given.
+    pub fn new(lens: &RayLens, view: &View) -> Self {
+        let half = view.half_extent();
+        let center = DVec2::new((2.0 * lens.center.x - 1.0) * half.x, (1.0 - 2.0 * lens.center.y) * half.y);
+        let what = match &lens.bend {
+            Bend::Magnify(Magnify { magnification: m, at, distance, border }) => {
+                let (z_l, z_m) = (distance.expect("a distance"), at.expect("a depth"));
+                // For a wanted magnification at a depth.
+                let plain = if view.is_orthographic() { 1.0 } else { 1.0 + z_m / z_l };
+                What::Magnifier { z_l, f: z_m / (1.0 - plain / m), border: border * lens.radius * 2.0 * half.y, z_m }
+            }
+            Bend::Sample(Sampling { rate }) => What::Sampling(rate.clone()),
+            Bend::Fisheye(Fisheye { angle, projection }) => What::Fisheye(*angle, *projection),
+            Bend::Feature(_) => panic!("it has no rim"),
+        };
+        Self { center, radius: lens.radius * 2.0 * half.y, is_square: lens.outline == RayOutline::Square, what }
+    }
+
+    fn radius_at(&self, from: DVec2) -> f64 {
+        if self.is_square { from.abs().max_element() } else { from.length() }
+    }
+}
+
+/// A piece of a ray: from where to where in its parameter, where it begins and goes, view space.
+pub type Piece = ([f64; 2], DVec3, DVec3);
+
+/// Where the ray of a place of the picture begins, and where it goes.
+pub fn plain_ray(place: DVec2, is_parallel: bool) -> (DVec3, DVec3) {
+    match is_parallel {
+        true => (place.extend(0.0), DVec3::NEG_Z),
+        false => (DVec3::ZERO, place.extend(-1.0)),
+    }
+}
+
+/// A plane that bends rays (equation 1).
+pub struct Plane {
+    pub center: DVec2,
+    pub z_l: f64,
+    pub f: f64,
+    pub z_m: f64,
+}
+
+impl Plane {
+    /// That of a magnifier in the middle of the picture.
+    pub fn of(lens: &RayLens, is_parallel: bool) -> Self {
+        let magnify = lens.bend.magnify().expect("a magnifier");
+        let (z_l, z_m) = (magnify.distance.expect("a distance"), magnify.at.expect("a depth"));
+        let plain = if is_parallel { 1.0 } else { 1.0 + z_m / z_l };
+        Self { center: DVec2::ZERO, z_l, f: z_m / (1.0 - plain / magnify.magnification), z_m }
+    }
+
+    /// The path of a place's ray, where the border has come to `k`.
+    pub fn path(&self, place: DVec2, k: f64, is_parallel: bool) -> Vec<Piece> {
+        let Self { center, z_l, f, z_m } = *self;
+        let (origin, direction) = plain_ray(place, is_parallel);
+        let on_plane = origin + z_l * direction;
+        // The focal point, on the line of sight through the lens' middle; and where the ray would meet its plane.
+        let (middle_origin, middle_direction) = plain_ray(center, is_parallel);
+        let focus = middle_origin + (z_l + f) * middle_direction;
+        let undisturbed = origin + (z_l + f) * direction;
+        let target = focus + k * (undisturbed - focus);
+        let slope = (target - on_plane) / f;
+        let reached = on_plane + z_m * slope;
+        let end = z_l + z_m;
+        let on = if is_parallel { DVec3::NEG_Z } else { reached / end };
+        vec![
+            ([0.0, z_l], origin, direction),
+            ([z_l, end], on_plane - z_l * slope, slope),
+            ([end, f64::INFINITY], reached - end * on, on),
+        ]
+    }
+}
+
+/// The path of the ray of a place of the picture through one lens.
+pub fn path(lens: &Bent, place: DVec2, is_parallel: bool) -> Vec<Piece> {
+    let own = |place| plain_ray(place, is_parallel);
+    let (origin, direction) = own(place);
+    let from = place - lens.center;
+    let r = lens.radius_at(from);
+    if r >= lens.radius {
+        return vec![([0.0, f64::INFINITY], origin, direction)];
+    }
+    match &lens.what {
+        What::Magnifier { z_l, f, border, z_m } => {
+            let k = if *border > 0.0 { ((r - (lens.radius - border)) / border).clamp(0.0, 1.0) } else { 0.0 };
+            Plane { center: lens.center, z_l: *z_l, f: *f, z_m: *z_m }.path(place, k, is_parallel)
+        }
+        What::Sampling(rate) => {
+            // The integral by many small steps.
+            let steps = 4000;
+            let integral = |to: f64| {
+                let step = to / f64::from(steps);
+                (0..steps).map(|i| step / rate.at((f64::from(i) + 0.5) * step)).sum::<f64>()
+            };
+            let share = r / lens.radius;
+            let shown = if share > 0.0 { integral(share) / integral(1.0) / share } else { 0.0 };
+            let (origin, direction) = own(lens.center + shown * from);
+            vec![([0.0, f64::INFINITY], origin, direction)]
+        }
+        What::Fisheye(angle, projection) => {
+            let share = from.length() / lens.radius;
+            let turn = match projection {
+                FisheyeProjection::Angular => share * angle / 2.0,
+                FisheyeProjection::Hemispherical => (share * (angle / 2.0).sin()).asin(),
+            };
+            let forward = own(if is_parallel { DVec2::ZERO } else { lens.center }).1.normalize_or_zero();
+            let right = forward.cross(DVec3::Y).normalize_or_zero();
+            let up = right.cross(forward);
+            let aside = if share > 0.0 { (from.x * right + from.y * up).normalize_or_zero() } else { DVec3::ZERO };
+            vec![([0.0, f64::INFINITY], DVec3::ZERO, turn.cos() * forward + turn.sin() * aside)]
+        }
+    }
+}
+
+/// A triangle of the city, view space.
+pub struct Face {
+    pub corners: [DVec3; 3],
+    pub object: u32,
+}
+
+/// Where a line meets a triangle (Möller & Trumbore, 1997).
+fn meets(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> {
+    let (ab, ac) = (b - a, c - a);
+    let p = direction.cross(ac);
+    let det = ab.dot(p);
+    if det.abs() < 1e-300 {
+        return None;
+    }
+    let from = origin - a;
+    let u = from.dot(p) / det;
+    let q = from.cross(ab);
+    let v = direction.dot(q) / det;
+    (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| ac.dot(q) / det)
+}
+
+/// Whether a line may meet a box within a range: what is lost to rounding counts as met.
+fn may_meet([low, high]: &[DVec3; 2], origin: DVec3, direction: DVec3, [begin, end]: [f64; 2]) -> bool {
+    let room = 1e-9 * (low.abs().max(high.abs()).max_element() + origin.abs().max_element());
+    let (mut from, mut to) = (begin, end);
+    for axis in 0..3 {
+        let (o, d) = (origin[axis], direction[axis]);
+        let (a, b) = (low[axis] - room - o, high[axis] + room - o);
+        if d == 0.0 {
+            if a > 0.0 || b < 0.0 {
+                return false;
+            }
+            continue;
+        }
+        let (near, far) = if d > 0.0 { (a / d, b / d) } else { (b / d, a / d) };
+        (from, to) = (from.max(near), to.min(far));
+    }
+    from <= to + 1e-9 * to.abs()
+}
+
+/// What a path meets first: its object and the parameter.
+pub fn first(faces: &[Face], pieces: &[Piece], near: f64) -> Option<(u32, f64)> {
+    for ([begin, end], origin, direction) in pieces {
+        let met = faces.iter().filter_map(|face| {
+            let t = meets(*origin, *direction, face.corners)?;
+            (t >= begin.max(near) && t <= *end).then_some((face.object, t))
+        });
+        if let Some(found) = met.min_by(|a, b| a.1.total_cmp(&b.1)) {
+            return Some(found);
+        }
+    }
+    None
+}
+
+/// All that a path meets, the parameters in no order.
+pub fn met(faces: &[Face], pieces: &[Piece], near: f64) -> Vec<f64> {
+    let of_piece = |([begin, end], origin, direction): &Piece| {
+        let met = faces.iter().filter_map(|face| meets(*origin, *direction, face.corners));
+        met.filter(|t| *t >= begin.max(near) && t <= end).collect::<Vec<f64>>()
+    };
+    pieces.iter().flat_map(of_piece).collect()
+}
+
+pub fn lens(kind: impl Into<LensKind>) -> Lens {
+    Lens { body: LensBody::None, ..Lens::plain("bent", kind, [0.5; 3]) }
+}
+
+pub fn magnifier(ray: RayLens) -> Lens {
+    lens(Magnifier { ray })
+}
+
+pub fn magnify(magnification: f64, distance: f64, at: f64, border: f64) -> RayLens {
+    let bend = Magnify { magnification, at: Some(at), distance: Some(distance), border };
+    RayLens { bend: Bend::Magnify(bend), radius: 0.42, ..RayLens::magnifier() }
+}
+
+fn sampling(rate: SamplingRate) -> Lens {
+    lens(SamplingLens { ray: RayLens { bend: Bend::Sample(Sampling { rate }), radius: 0.45, ..RayLens::sampling() } })
+}
+
+fn fisheye(angle_deg: f64, projection: FisheyeProjection) -> Lens {
+    let bend = Bend::Fisheye(Fisheye { angle: angle_deg.to_radians(), projection });
+    lens(FisheyeLens { ray: RayLens { bend, ..RayLens::fisheye() } })
+}
+
+/// Lenses of every kind.
+pub fn all() -> Vec<Lens> {
+    let square = RayLens { outline: RayOutline::Square, ..magnify(3.0, 120.0, 90.0, 0.3) };
+    let aside = RayLens { center: DVec2::new(0.35, 0.6), radius: 0.3, ..magnify(5.0, 60.0, 140.0, 0.5) };
+    let drawn = [[0.0, 3.0], [0.3, 3.0], [0.6, 1.0], [1.0, 1.5]].map(DVec2::from).to_vec();
+    vec![
+        magnifier(magnify(2.5, 100.0, 100.0, 0.4)),
+        magnifier(aside),
+        magnifier(square),
+        magnifier(magnify(0.7, 100.0, 100.0, 0.8)),
+        magnifier(magnify(2.0, 80.0, 160.0, 0.0)),
+        sampling(SamplingRate::Cubic(3.0)),
+        sampling(SamplingRate::Points(drawn)),
+        fisheye(180.0, FisheyeProjection::Angular),
+        fisheye(320.0, FisheyeProjection::Angular),
+        fisheye(150.0, FisheyeProjection::Hemispherical),
+    ]
+}
+
+pub fn cameras(studio: &Studio) -> Vec<Camera> {
+    let middle = studio.extent().center();
+    let slanting = Camera::looking(middle + DVec3::new(70.0, -150.0, 120.0), middle, 0.8);
+    let level = Camera { projection: Projection::Orthographic { height_m: 160.0 }, ..slanting };
+    let street = Camera::looking(middle + DVec3::new(9.0, -60.0, 4.0), middle + DVec3::new(-6.0, 20.0, 8.0), 1.0);
+    vec![slanting, level, street]
+}
+
+/// A city as a camera sees it, without lenses.
+pub struct Sight {
+    /// Those of an object stand together.
+    pub faces: Vec<Face>,
+    /// The boxes around objects, view space, and which faces are theirs.
+    boxes: Vec<([DVec3; 2], std::ops::Range<usize>)>,
+    pub half: DVec2,
+    pub is_parallel: bool,
+    size: [u32; 2],
+    near: f64,
+}
+
+impl Sight {
+    pub fn new(studio: &Studio, camera: Camera, size: [u32; 2]) -> Self {
+        let view = View::new(camera, size, &studio.extent()).expect("a view");
+        let to_view = view.basis.view_from_world();
+        let face =
+            |t: studio::Triangle| Face { corners: t.corners.map(|c| to_view * (c - camera.eye)), object: t.object };
+        let mut faces: Vec<Face> = studio::triangles(studio).into_iter().map(face).collect();
+        faces.sort_by_key(|face| face.object);
+        let mut boxes = Vec::new();
+        let mut begin = 0;
+        for own in faces.chunk_by(|a, b| a.object == b.object) {
+            let corners = || own.iter().flat_map(|face| face.corners);
+            let around = [corners().reduce(DVec3::min), corners().reduce(DVec3::max)];
+            boxes.push((around.map(|corner| corner.expect("three corners a face")), begin..begin + own.len()));
+            begin += own.len();
+        }
+        Self { faces, boxes, half: view.half_extent(), is_parallel: view.is_orthographic(), size, near: camera.near_m }
+    }
+
+    /// The middle of a pixel.
+    pub fn pixel(&self, i: usize) -> DVec2 {
+        let w = self.size[0] as usize;
+        DVec2::new((i % w) as f64 + 0.5, (i / w) as f64 + 0.5)
+    }
+
+    /// Where that is in the picture's plane.
+    pub fn place(&self, pixel: DVec2) -> DVec2 {
+        let [w, h] = self.size.map(f64::from);
+        DVec2::new(2.0 * pixel.x / w - 1.0, 1.0 - 2.0 * pixel.y / h) * self.half
+    }
+
+    pub fn straight(&self, place: DVec2) -> Vec<Piece> {
+        let (origin, direction) = plain_ray(place, self.is_parallel);
+        vec![([0.0, f64::INFINITY], origin, direction)]
+    }
+
+    /// What a path meets first: its object and the parameter. Objects whose boxes a piece misses are left out.
+    pub fn first(&self, pieces: &[Piece]) -> Option<(u32, f64)> {
+        for (range, origin, direction) in pieces {
+            let (begin, end) = (range[0].max(self.near), range[1]);
+            let met = self.boxes.iter().filter(|(around, _)| may_meet(around, *origin, *direction, [begin, end]));
+            let found = met.flat_map(|(_, own)| &self.faces[own.clone()]).filter_map(|face| {
+                let t = meets(*origin, *direction, face.corners)?;
+                (t >= begin && t <= end).then_some((face.object, t))
+            });
+            if let Some(found) = found.min_by(|a, b| a.1.total_cmp(&b.1)) {
+                return Some(found);
+            }
+        }
+        None
+    }
+
+    /// What an AOV of objects says of a path.
+    pub fn id(&self, path: &[Piece]) -> u32 {
+        self.first(path).map_or(0, |(object, _)| object + 1)
+    }
+}
+
+pub fn draw(studio: &mut Studio, scene: &Scene, size: [u32; 2], backend: Backend) -> Picture {
+    let aovs = Aovs { depth: true, object_id: true, ..Aovs::default() };
+    studio.render(scene, &Request { aovs, backend, ..Request::plain(size) }).expect("a picture")
+}
+
+/// Pixels of a lens that were compared, and those that are wrong, with the farthest that a depth is off.
+pub fn compare(studio: &mut Studio, camera: Camera, lens: &Lens, size: [u32; 2]) -> (usize, usize, f64) {
+    let scene = studio::scene(camera, vec![lens.clone()]);
+    let picture = draw(studio, &scene, size, Backend::Specialised);
+    let view = View::new(camera, size, &studio.extent()).expect("a view");
+    let sight = Sight::new(studio, camera, size);
+    let reference = Bent::new(lens.ray().expect("a lens that bends rays"), &view);
+    let (ids, depths) = (picture.object_id.expect("ids"), picture.depth.expect("depths"));
+    let met = |pixel: DVec2| sight.first(&path(&reference, sight.place(pixel), sight.is_parallel));
+    let of_pixel = |i: usize| {
+        let pixel = sight.pixel(i);
+        let from = sight.place(pixel) - reference.center;
+        if reference.radius_at(from) >= reference.radius {
+            return None;
+        }
+        let own = met(pixel);
+        // Most are the same in the middle of the pixel already.
+        match own {
+            Some((object, t)) if object + 1 == ids[i] => {
+                let off = (t / f64::from(depths[i]) - 1.0).abs();
+                if off <= DEPTH_OFF {
+                    return Some((true, off));
+                }
+            }
+            None if ids[i] == 0 => return Some((true, 0.0)),
+            _ => {}
+        }
+        // Slivers of faces may pass between a few places around.
+        let around = (0..32).map(|k| {
+            let (turn, ring) = (k % 8, 1 + k / 8);
+            f64::from(ring) / 4.0 * BESIDE_PX * DVec2::from_angle(f64::from(turn) * std::f64::consts::FRAC_PI_4)
+        });
+        let met: Vec<Option<(u32, f64)>> = std::iter::once(own).chain(around.map(|aside| met(pixel + aside))).collect();
+        let shown: Vec<f64> = match ids[i] {
+            // The plain ground, or nothing.
+            0 => return Some((met.iter().any(Option::is_none), 0.0)),
+            id => met.iter().flatten().filter(|(object, _)| object + 1 == id).map(|(_, t)| *t).collect(),
+        };
+        let nearest = shown.iter().copied().fold(f64::INFINITY, f64::min);
+        let farthest = shown.iter().copied().fold(0.0, f64::max);
+        let depth = f64::from(depths[i]);
+        let off = (nearest / depth - 1.0).max(1.0 - farthest / depth).max(0.0);
+        Some((off <= DEPTH_OFF, off))
+    };
+    let found: Vec<(bool, f64)> = (0..ids.len()).into_par_iter().filter_map(of_pixel).collect();
+    let wrong = found.iter().filter(|(is_right, _)| !is_right).count();
+    (found.len(), wrong, found.iter().map(|(_, off)| *off).fold(0.0, f64::max))
+}
