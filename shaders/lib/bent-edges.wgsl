@@ -7,7 +7,7 @@ const EDGE_PARTS: u32 = 12u;
 fn shown_by_plane(lens: u32, across: vec2f, distance: f32) -> vec2f {
     let own = ray_lens(lens);
     let share = rim_share(lens, across);
-    if distance <= own.distance || share >= 1.0 || own.outline == OUTLINE_FIELD {
+    if distance <= own.distance || share >= 1.0 || own.outline == OUTLINE_FIELD || !acts(lens) {
         return across;
     }
     let e = select(1.0 / own.distance, 0.0, view.orthographic == 1u);
@@ -103,6 +103,9 @@ fn displayed(p: vec3f) -> vec3f {
         let scale = select(max(-shown.z, view.near), 1.0, is_flat);
         let is_within = shown.z < 0.0 && rim_share(lens, shown.xy / scale) < 1.0;
         let at = shown_by_fisheye(lens, p);
+        if !acts(lens) {
+            continue;
+        }
         if is_sampled && is_within {
             shown = vec3f(shown_by_sampling(lens, shown.xy / scale) * scale, shown.z);
         } else if !is_sampled && at.z >= 0.0 {

@@ -41,6 +41,7 @@ struct RayLenses {
     followed: u32,              // a bit for each lens: whether its rays are followed through triangles,
     warped: u32,                // or looked up in an image of what the eye sees,
     moved: u32,                 // or triangles' corners are where it shows them
+    chosen: array<vec4u, 2>,    // of each lens where the marks of the objects that it acts on begin, from 1; 0: it acts on all
     lenses: array<RayLens, 8>,
     along: array<RayEvent, 16>, // nearest first
     knots: array<vec4f, 1024>,  // radius of the lens, of the picture, its derivative
@@ -180,7 +181,7 @@ fn path_of_place(place: vec2f) -> Path {
     for (var lens = 0u; lens < RAY_IMAGES; lens++) {
         let share = rim_share(lens, across);
         let is_sampled = ray_lens(lens).kind == RAY_SAMPLED;
-        let is_met = share < 1.0 && !path.is_round;
+        let is_met = share < 1.0 && !path.is_round && acts(lens);
         if is_met && !is_sampled {
             path.ray = round_ray(lens, across);
             path.is_round = true;
@@ -212,7 +213,8 @@ fn pass_event(path: ptr<function, Path>, number: u32) {
     let scale = select(event.distance, 1.0, is_flat);
     let share = rim_share(RAY_IMAGES + plane, at / scale);
     let k = select(0.0, max((share - (1.0 - lens.border)) / lens.border, 0.0), lens.border > 0.0);
-    let met = select(vec2f(0.0), -(1.0 - k) * lens.power * (at - scale * lens.center), share < 1.0);
+    let is_met = share < 1.0 && acts(RAY_IMAGES + plane);
+    let met = select(vec2f(0.0), -(1.0 - k) * lens.power * (at - scale * lens.center), is_met);
     let ends = event.ends == 1u;
     let by = select(met, (*path).bent[plane], ends);
     (*path).bent[plane] = by;

@@ -461,6 +461,8 @@ fn walk_fields(pixel: vec2i, ray: Ray, from_distance: f32, until: f32, part: u32
 
 // The fields up to a distance, from where they are laid already.
 fn lay_fields(pixel: vec2i, middle: vec2f, until: f32, part: u32, laid: ptr<function, vec4f>) {
+    // Fields are no objects.
+    see_object(NO_OBJECT);
     while fields_until < until && (*laid).w >= LEAST_THROUGH {
         var next = min(until, line_ends(fields_until));
         var nearest = 4u;
@@ -498,6 +500,7 @@ fn lay_projected(number: u32, pixel: vec2i, middle: vec2f, part: u32, laid: ptr<
 // Finds where those stand that are one layer: their largest or smallest value before what is opaque, or the middle of what is met of them.
 fn begin_fields(pixel: vec2i, middle: vec2f, part: u32) {
     fields_until = view.near;
+    see_object(NO_OBJECT);
     let depth = textureLoad(scene_depth, pixel, 0);
     let opaque = select(FAR_AWAY, distance_of_depth(depth), depth > 0.0);
     for (var i = 0u; FIELDS_PROJECTED && i < fields.count; i++) {
@@ -558,6 +561,7 @@ fn is_seen_of_field(number: u32, pixel: vec2i, ray: Ray, distance: f32, part: u3
 // The classes of what is opaque, or of the background, where no layer of the city is the shown surface.
 fn write_classes_of_opaque(pixel: vec2i, middle: vec2f, depth: f32, part: u32) {
     let is_any = depth > 0.0;
+    see_object(surface_shown(max(textureLoad(codes, pixel, 0).x, 1u) - 1u).object);
     see_pixel(middle, select(FAR_AWAY, distance_of_depth(depth), is_any));
     let ray = ray_of_pixel(middle);
     if is_any {

@@ -2,6 +2,7 @@
 
 // The fragment at a place of the target.
 fn fragment_at(at: vec2f, depth: f32, code: u32) -> Fragment {
+    see_object(surface_at(code - 1u).object);
     see_pixel(at, distance_of_depth(depth));
     return fragment_on(ray_of_pixel(at), at, depth, code);
 }

@@ -220,6 +220,10 @@ fn code_of(hit: Hit) -> u32 {
     return ray_words[hit.triangle].w + ray_cities.all[hit.city].surfaces + 1u;
 }
 
+fn object_of(hit: Hit) -> u32 {
+    return surface_at(code_of(hit) - 1u).object;
+}
+
 // The first that a straight piece of a ray meets from `from` to `to`, nearer than `best`, and is there.
 fn first_in_city(at: vec2f, number: u32, line: Ray, range: vec2f, best: Hit) -> Hit {
     let own = ray_cities.all[number];
@@ -253,7 +257,7 @@ fn first_in_city(at: vec2f, number: u32, line: Ray, range: vec2f, best: Hit) -> 
             for (var i = 0u; i < high.w; i++) {
                 let hit = hit_of(number, ray, own.triangles + 3u * (low.w + i));
                 let is_nearer = hit.t < found.t || (hit.t == found.t && hit.t < FAR_AWAY && lies_over(found, hit));
-                if is_nearer && hit.t >= range.x && hit.t <= range.y {
+                if is_nearer && hit.t >= range.x && hit.t <= range.y && is_in_set(object_of(hit)) {
                     //@met
                 }
             }
@@ -262,8 +266,17 @@ fn first_in_city(at: vec2f, number: u32, line: Ray, range: vec2f, best: Hit) -> 
     return found;
 }
 
-// The first that the ray of a pixel meets nearer than `last`.
+// The first that the ray of a pixel meets nearer than `last`: of each set of lenses that may act on something, among what it acts on.
 fn first_of_pixel(at: vec2f, last: Hit) -> Hit {
+    var found = last;
+    for (var number = 0u; number < (1u << RAY_CHOOSING); number++) {
+        see_set(number);
+        found = first_on_path(at, found);
+    }
+    return found;
+}
+
+fn first_on_path(at: vec2f, last: Hit) -> Hit {
     var path = path_of_place(across_of_pixel(at));
     var found = last;
     var begin = view.near;
@@ -341,6 +354,7 @@ struct HitLook {
 
 fn look_of(at: vec2f, hit: Hit) -> HitLook {
     let surface = surface_at(code_of(hit) - 1u);
+    see_object(surface.object);
     let kind = ray_words[hit.triangle + 1u].w;
     var rest = rest_of(hit);
     var normal = surface.normal;

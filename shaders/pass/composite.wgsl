@@ -233,6 +233,7 @@ fn composite(in: Corner) -> Composite {
             color = before.rgb;
             through = before.w;
             let code = node.key.y & NODE_CODE;
+            see_object(surface_shown(code - 1u).object);
             see_pixel(in.clip.xy, distance_of_depth(depth));
             let ray = ray_of_pixel(in.clip.xy);
             var point = point_of(pixel, ray, depth, vec2u(code, normal), unpacked(node.light));
@@ -299,6 +300,7 @@ fn composite(in: Corner) -> Composite {
         // Which of the layers is the shown surface is not known: it is what is opaque.
         if through <= 0.5 && shown.x == 0u {
             let depth = textureLoad(scene_depth, pixel, 0);
+            see_object(surface_shown(textureLoad(codes, pixel, 0).x - 1u).object);
             see_pixel(in.clip.xy, distance_of_depth(depth));
             let ray = ray_of_pixel(in.clip.xy);
             let point = point_at(pixel, ray, depth);

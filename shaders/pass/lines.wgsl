@@ -34,6 +34,7 @@ struct Line {
 
 @vertex
 fn vertex(edge: Edge, @builtin(vertex_index) i: u32) -> Line {
+    see_object(surface_at(city_surface(edge_surface(edge))).object);
     let made = edge_vertex(edge, i, stage.width);
     var is_drawn = edge_class(edge) != EDGE_FLAT || draws(LINES_FLAT);
     if draws(LINES_FRONT) && edge_class(edge) != EDGE_BORDER {
@@ -57,6 +58,7 @@ struct Pixel {
 fn fragment(in: Line) -> Pixel {
     let pixel = vec2i(in.clip.xy);
     let depth = edge_own_depth(in.line, in.ends);
+    see_object(surface_at(in.surfaces.x).object);
     see_pixel(in.clip.xy, distance_of_depth(depth));
     let ray = ray_of_pixel(in.clip.xy);
     let position = ray.origin + distance_of_depth(depth) * ray.direction;

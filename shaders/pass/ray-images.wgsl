@@ -45,6 +45,7 @@ fn imaged(in: Imaged) -> Looks {
         discard;
     }
     let kind = ray_words[hit.triangle + 1u].w;
+    see_object(object_of(hit));
     let rest = rest_of(hit) + select(0u, 1u, (kind & TRIANGLE_SMOOTH) != 0u);
     let corners = texcoords_of(rest);
     let here = texcoord_of(corners, weights_beside(in.at.xy, hit));

@@ -43,6 +43,7 @@ fn vertex_moved(@builtin(vertex_index) index: u32, @location(0) piece: vec3u) ->
     let b = corner_in_view(piece.y, ray_words[piece.x + 1u]);
     let c = corner_in_view(piece.y, ray_words[piece.x + 2u]);
     let p = a + weights.x * (b - a) + weights.y * (c - a);
+    see_object(NO_OBJECT);
     let shown = displayed(p);
     let is_shown = shown.z < 0.0 || shown.z == p.z;
     let clip = select(vec4f(0.0, 0.0, 0.0, 1.0), clip_of(shown), is_shown);
@@ -87,6 +88,7 @@ fn moved(in: Moved) -> Followed {
     }
     let at = in.clip.xy;
     var hit = Hit(distance_of_depth(in.clip.z), in.hit.x, in.hit.y, in.weights);
+    see_object(NO_OBJECT);
     let line = bent_ray(across_of_pixel(at), hit.t);
     let kind = ray_words[hit.triangle + 1u].w;
     // How far it is, its own plane says, not the corners around.

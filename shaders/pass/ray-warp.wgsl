@@ -219,6 +219,8 @@ fn warp(in: Place) -> Warped {
     if (over & ray_lenses.warped) == 0u || (over & ray_lenses.followed) != 0u {
         discard;
     }
+    // No lens that tells objects apart is over it.
+    see_object(NO_OBJECT);
     let met = meeting_of(across_of_pixel(place.xy));
     let source = source_of(point_at(met.line, met.t));
     var warped: Warped;

@@ -170,6 +170,7 @@ fn unfiltered(in: Corner) -> Unfiltered {
 }
 
 fn paint_of_surface(pixel: vec2i, middle: vec2f, depth: f32, part: u32) -> vec4f {
+    see_object(surface_shown(textureLoad(codes, pixel, 0).x - 1u).object);
     see_pixel(middle, distance_of_depth(depth));
     let ray = ray_of_pixel(middle);
     var point = point_at(pixel, ray, depth);
@@ -179,6 +180,7 @@ fn paint_of_surface(pixel: vec2i, middle: vec2f, depth: f32, part: u32) -> vec4f
 }
 
 fn paint_of_background(pixel: vec2i, middle: vec2f, part: u32) -> vec4f {
+    see_object(NO_OBJECT);
     see_pixel(middle, FAR_AWAY);
     let ray = ray_of_pixel(middle);
     let paint = vec4f(behind_city(ray.direction * view.view_from_world), select(1.0, 0.0, BACKGROUND == NOTHING));

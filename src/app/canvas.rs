@@ -116,7 +116,8 @@ pub fn pick(frame: &Frame, at: DVec2) -> Option<Hovered> {
         return None;
     }
     if !frame.rays.is_empty() {
-        return Some(Hovered { object: ids.get(i)?.checked_sub(1), at: bent_place(frame, [x, y], depth) });
+        let object = ids.get(i)?.checked_sub(1);
+        return Some(Hovered { object, at: bent_place(frame, object, [x, y], depth) });
     }
     let ray = frame.view.pixel_ray(x, y);
     let along = ray.direction.dot(frame.view.basis.forward);
@@ -126,12 +127,12 @@ pub fn pick(frame: &Frame, at: DVec2) -> Option<Hovered> {
     Some(Hovered { object: ids.get(i)?.checked_sub(1), at: place })
 }
 
-/// The place that a pixel shows so far away, where lenses bend rays.
-fn bent_place(frame: &Frame, pixel: [u32; 2], depth: f64) -> DVec3 {
+/// The place of an object that a pixel shows so far away, where lenses bend rays.
+fn bent_place(frame: &Frame, object: Option<u32>, pixel: [u32; 2], depth: f64) -> DVec3 {
     let view = &frame.view;
     let share = (DVec2::from(pixel.map(f64::from)) + 0.5) / DVec2::from(view.size.map(f64::from));
     let across = DVec2::new(2.0 * share.x - 1.0, 1.0 - 2.0 * share.y) * view.half_extent();
-    let place = frame.rays.line(across, depth).at(depth);
+    let place = frame.rays.acting_on(object).line(across, depth).at(depth);
     let to_world = view.basis.view_from_world().transpose();
     view.camera.eye + to_world * place
 }

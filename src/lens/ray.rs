@@ -24,6 +24,8 @@ pub struct RayLens {
     /// How finely, > 0: of [`RayMethod::Image`] texels of its image to a pixel, where it magnifies most; of [`RayMethod::Vertices`] how many
     /// times shorter sides of triangles are than where nothing is said.
     pub fineness: f64,
+    /// The city objects that it acts on; the others are seen as without it. `None`: all.
+    pub only: Option<Choice>,
     /// Whether lines that are straight without it are drawn over what it shows.
     pub grid: bool,
 }
@@ -134,6 +136,7 @@ impl RayLens {
             bend,
             method: RayMethod::default(),
             fineness: 1.0,
+            only: None,
             grid: false,
         }
     }

@@ -15,7 +15,7 @@
 //! where f has one, and of several lenses that a ray meets powers add: one that makes things smaller by as much undoes another one.
 //! The focal point lies on the line of sight through the lens' middle, not straight before it: what is in the middle stays there.
 
-use std::{collections::BTreeMap, path::Path, sync::Arc};
+use std::{borrow::Cow, collections::BTreeMap, path::Path, sync::Arc};
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -31,6 +31,8 @@ use crate::{
 
 /// Lenses that bend rays, of one picture at most.
 pub const MOST_RAY_LENSES: usize = 8;
+/// Of these, at most, act on some objects alone: rays are followed for each set of lenses that act on something.
+pub const MOST_CHOOSING: usize = 3;
 
 /// The rim of a lens in the picture's plane.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +51,17 @@ pub struct Rim {
     pub method: RayMethod,
     /// As [`RayLens::fineness`] has it.
     pub fineness: f64,
+    /// The objects that the lens acts on; `None`: all.
+    pub only: Option<Chosen>,
+}
+
+/// Objects that a lens acts on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chosen {
+    /// One per object of the scene's own city.
+    pub objects: Arc<[bool]>,
+    /// Where their marks begin among the objects' values.
+    pub first: u32,
 }
 
 impl Rim {
@@ -194,6 +207,7 @@ impl PictureFrame {
             field: None,
             method: lens.method,
             fineness: lens.fineness,
+            only: None,
         }
     }
 }
@@ -252,6 +266,27 @@ impl RayPaths {
     /// The rims of all lenses.
     pub fn rims(&self) -> impl Iterator<Item = &Rim> {
         self.images.iter().map(|lens| &lens.rim).chain(self.planes.iter().map(|lens| &lens.rim))
+    }
+
+    /// The rims of all lenses with the lenses' numbers, to be changed.
+    pub fn rims_mut(&mut self) -> impl Iterator<Item = (u32, &mut Rim)> {
+        let images = self.images.iter_mut().map(|lens| (lens.lens, &mut lens.rim));
+        images.chain(self.planes.iter_mut().map(|lens| (lens.lens, &mut lens.rim)))
+    }
+
+    /// Those of the lenses that act on an object, by which it is seen; `None`: on what is no object.
+    pub fn acting_on(&self, object: Option<u32>) -> Cow<'_, Self> {
+        if self.rims().all(|rim| rim.only.is_none()) {
+            return Cow::Borrowed(self);
+        }
+        let acts = |rim: &Rim| match &rim.only {
+            None => true,
+            Some(only) => object.is_some_and(|object| only.objects.get(object as usize) == Some(&true)),
+        };
+        let mut own = self.clone();
+        own.images.retain(|lens| acts(&lens.rim));
+        own.planes.retain(|lens| acts(&lens.rim));
+        Cow::Owned(own)
     }
 
     /// Whether the ray of a place of the picture may be bent.
@@ -801,5 +836,14 @@ mod tests {
                 assert_eq!(found > 0.0, is_open && magnification > 2.0, "{is_open} {magnification}: {found}");
             }
         }
+    }
+
+    #[test]
+    fn lenses_act_on_what_they_chose() {
+        let mut paths = paths(&[magnifier(2.0, 50.0, 50.0, 0.4), magnifier(3.0, 50.0, 50.0, 0.4)], false);
+        assert!(matches!(paths.acting_on(None), Cow::Borrowed(_)));
+        paths.planes[1].rim.only = Some(Chosen { objects: [false, true].into(), first: 7 });
+        let acting = |object| paths.acting_on(object).lenses();
+        assert_eq!([None, Some(0), Some(1), Some(2)].map(acting), [vec![0], vec![0], vec![0, 1], vec![0]]);
     }
 }

@@ -100,6 +100,8 @@ pub(super) fn uniform(paths: &RayPaths) -> layout::RayLenses {
     };
     (made.followed, made.warped) = (of_method(RayMethod::Rays), of_method(RayMethod::Image));
     made.moved = of_method(RayMethod::Vertices);
+    let chosen = made.chosen.as_flattened_mut().iter_mut();
+    chosen.zip(paths.rims()).for_each(|(slot, rim)| *slot = rim.only.as_ref().map_or(0, |only| only.first + 1));
     made.stretch = paths.stretch().map_or(FAR_AWAY, |stretch| stretch as f32);
     let events = paths.events();
     made.events = events.len().min(made.along.len()) as u32;

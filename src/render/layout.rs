@@ -390,6 +390,7 @@ pub struct RayLenses {
     pub warped: u32,
     pub moved: u32,
     pub pad_0: u32,
+    pub chosen: [[u32; 4]; 2],
     pub lenses: [RayLens; RAY_LENSES],
     pub along: [RayEvent; 2 * RAY_LENSES],
     pub knots: [[f32; 4]; RAY_KNOTS],
@@ -712,8 +713,8 @@ mod tests {
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
-        let rays = Module::Rays(None, crate::shader::Bends { images: 1, planes: 1, grids: false });
-        let warp = Module::RayWarp(crate::shader::Bends { images: 1, planes: 1, grids: false });
+        let rays = Module::Rays(None, crate::shader::Bends { images: 1, planes: 1, grids: false, choosing: 0 });
+        let warp = Module::RayWarp(crate::shader::Bends { images: 1, planes: 1, grids: false, choosing: 0 });
         let fields = Module::Composite(Program::Specialised(Plan { fields: true, ..Plan::default() }));
         let checks = [
             (
@@ -824,6 +825,7 @@ mod tests {
                     warped,
                     moved,
                     pad_0,
+                    chosen,
                     lenses,
                     along,
                     knots

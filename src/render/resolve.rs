@@ -11,7 +11,7 @@ use crate::{
     lens::{
         chosen::{Choice, members},
         ray::RayLens,
-        ray_path::{MOST_RAY_LENSES, PictureFrame, RayPaths, Scenery},
+        ray_path::{Chosen, MOST_CHOOSING, MOST_RAY_LENSES, PictureFrame, RayPaths, Scenery},
         solids::{ShownCity, Solids},
     },
     render::{
@@ -30,7 +30,7 @@ use crate::{
         occlusion::Occlusion,
         operations::{AllTests, Beside, LensTables, MOST_FILTERS, Operations, SceneTime},
         parts::whole,
-        placed_region::Leaf,
+        placed_region::{Leaf, Members},
         placement::Eye,
         ray_fields::RayMasks,
         regions,
@@ -167,7 +167,8 @@ impl Surroundings<'_> {
         let all = all.union(fields.bounds());
         let mut view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
-        let rays = self.rays(scene, &view, &mut known.ray_masks)?;
+        let mut rays = self.rays(scene, &view, &mut known.ray_masks)?;
+        let choosing = self.choose(scene, &mut rays, &mut operations, &self.models(&contents))?;
         refuse_with(scene, !rays.is_empty(), "lenses that bend rays")?;
         refuse_with(scene, !fields.is_empty(), "volumes")?;
         view.looks_around = rays.looks_around();
@@ -180,11 +181,39 @@ impl Surroundings<'_> {
             images: rays.images.len() as u32,
             planes: rays.planes.len() as u32,
             grids: rays.rims().any(|rim| rim.grid.is_some()),
+            choosing,
         });
         if !fields.is_empty() {
             operations.add_fields();
         }
         Ok(Resolved { view, volumes, solids, operations, contents, deformations, rays, fields, suns: Vec::new() })
+    }
+
+    /// Marks the objects that lenses which bend rays act on, where they do not act on all; how many such lenses there are.
+    fn choose(
+        &self,
+        scene: &Scene,
+        rays: &mut RayPaths,
+        operations: &mut Operations,
+        models: &[&CityModel],
+    ) -> Result<u32, ResolveError> {
+        let count = models.iter().map(|model| model.objects.len()).sum();
+        let mut choosing = 0;
+        for (number, rim) in rays.rims_mut() {
+            let only = scene.lenses.get(number as usize).and_then(|lens| lens.ray()?.only.as_ref());
+            if let Some(only) = only {
+                let objects: Arc<[bool]> = members(self.city.model, only).into();
+                let members = Members { objects: Arc::clone(&objects), thresholds: None, bounds: Aabb::EMPTY };
+                rim.only = Some(Chosen { first: operations.add_members(&members, count), objects });
+                choosing += 1;
+            }
+        }
+        match choosing as usize > MOST_CHOOSING {
+            true => Err(ResolveError::Scene(format!(
+                "{choosing} lenses that bend rays act on some objects alone (ray.only); one picture takes {MOST_CHOOSING}"
+            ))),
+            false => Ok(choosing),
+        }
     }
 
     /// The lenses that bend rays.

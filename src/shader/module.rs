@@ -116,6 +116,7 @@ impl Module {
         files.extend_from_slice(self.held(adapter));
         if self.bends().is_any() {
             files.push(BENT_RAYS);
+            files.extend((self.bends().choosing > 0 && !files.contains(&OBJECTS)).then_some(OBJECTS));
             files.extend(matches!(self, Self::Lines(_) | Self::RayVertices(..)).then_some(BENT_EDGES));
             let shades = matches!(self, Self::Shade(_) | Self::Composite(_));
             files.extend((shades && self.bends().grids).then_some(RAY_GRID));

@@ -12,10 +12,13 @@ use crate::shader::{
 /// that are bent `lib/bent-rays.wgsl` has both.
 pub(super) fn source(bends: Bends, is_carried: bool) -> String {
     if bends.is_any() {
-        let Bends { images, planes, grids } = bends;
+        let Bends { images, planes, grids, choosing } = bends;
         let lenses = if is_carried && bends.is_one() { CARRIED } else { IN_UNIFORM };
         let grids = if grids { "" } else { NO_GRIDS };
-        return format!("const RAY_IMAGES: u32 = {images}u;\nconst RAY_PLANES: u32 = {planes}u;\n{lenses}{grids}");
+        let acting = if choosing > 0 { ON_SOME } else { ON_ALL };
+        return format!(
+            "const RAY_IMAGES: u32 = {images}u;\nconst RAY_PLANES: u32 = {planes}u;\nconst RAY_CHOOSING: u32 = {choosing}u;\n{lenses}{acting}{grids}"
+        );
     }
     let own = handlers().iter().find(|h| (h.kind, h.mode) == (EffectKind::Ray, Mode::Optional));
     let Some(own) = own else { unreachable!("the program has a ray of its own") };
@@ -25,6 +28,65 @@ pub(super) fn source(bends: Bends, is_carried: bool) -> String {
         own.source
     )
 }
+
+/// Where all lenses act on all.
+const ON_ALL: &str = "
+fn acts(number: u32) -> bool {
+    return true;
+}
+
+fn see_object(object: u32) {}
+
+fn see_set(which: u32) {}
+
+fn is_in_set(object: u32) -> bool {
+    return true;
+}
+";
+
+/// Where some act on some objects alone. A set is which of these do.
+const ON_SOME: &str = "
+// The lenses that act on what is looked at, a bit for each.
+var<private> acting: u32;
+
+fn acts(number: u32) -> bool {
+    return (acting >> number & 1u) != 0u;
+}
+
+fn marks_of(number: u32) -> u32 {
+    return ray_lenses.chosen[number / 4u][number % 4u];
+}
+
+fn lenses_that_act_on(object: u32) -> u32 {
+    var found = 0u;
+    for (var number = 0u; number < RAY_IMAGES + RAY_PLANES; number++) {
+        let first = marks_of(number);
+        let is_acting = first == 0u || is_chosen(max(first, 1u) - 1u, object);
+        found |= select(0u, 1u << number, is_acting);
+    }
+    return found;
+}
+
+fn see_object(object: u32) {
+    acting = lenses_that_act_on(object);
+}
+
+// Of the lenses that choose those act whose bits are set.
+fn see_set(which: u32) {
+    acting = 0u;
+    var bit = 0u;
+    for (var number = 0u; number < RAY_IMAGES + RAY_PLANES; number++) {
+        let chooses = marks_of(number) != 0u;
+        let is_acting = !chooses || (which >> bit & 1u) != 0u;
+        acting |= select(0u, 1u << number, is_acting);
+        bit += select(0u, 1u, chooses);
+    }
+}
+
+fn is_in_set(object: u32) -> bool {
+    return lenses_that_act_on(object) == acting;
+}
+";
 
 /// Where no lens has a grid.
 const NO_GRIDS: &str = "\nfn gridded(paint: vec4f, pixel: vec2i) -> vec4f {\n    return paint;\n}\n";
@@ -88,4 +150,4 @@ pub(super) const TAKEN_FROM_UNIFORM: &str = "    let ray_lens_0 = ray_lenses.len
 ";
 
 /// Rays that are not bent are the same all along.
-const STRAIGHT: &str = "\n// (x, y, -1) for parallel rays, too.\nfn picture_place(ray: Ray) -> vec3f {\n    return ray.origin + ray.direction;\n}\n\nfn picture_place_at(distance: f32, place: vec3f) -> vec3f {\n    return place;\n}\n\nfn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {\n    return ray_of_pixel(pixel);\n}\n\nfn line_ends(distance: f32) -> f32 {\n    return FAR_AWAY;\n}\n\nfn see_pixel(pixel: vec2f, distance: f32) {}\n\nfn most_stretch(pixel: vec2f, reach: f32) -> f32 {\n    return 1.0;\n}\n";
+const STRAIGHT: &str = "\n// (x, y, -1) for parallel rays, too.\nfn picture_place(ray: Ray) -> vec3f {\n    return ray.origin + ray.direction;\n}\n\nfn picture_place_at(distance: f32, place: vec3f) -> vec3f {\n    return place;\n}\n\nfn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {\n    return ray_of_pixel(pixel);\n}\n\nfn line_ends(distance: f32) -> f32 {\n    return FAR_AWAY;\n}\n\nfn see_pixel(pixel: vec2f, distance: f32) {}\n\nfn see_object(object: u32) {}\n\nfn most_stretch(pixel: vec2f, reach: f32) -> f32 {\n    return 1.0;\n}\n";

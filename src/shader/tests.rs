@@ -122,6 +122,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
             images: u32::from(seed % 8 == 1),
             planes: (seed % 4) as u32 / 3 + u32::from(seed.is_multiple_of(5)),
             grids: seed % 3 == 2,
+            choosing: if seed % 4 == 3 { 1 } else { 0 },
         },
         fields: seed % 5 > 2,
         varies: seed % 3 < 2 && seed % 5 < 2,

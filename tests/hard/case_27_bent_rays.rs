@@ -5,18 +5,14 @@ use rayon::prelude::*;
 use veduta::{
     geom::Shape,
     lens::{
-        Deform, Lens, LensBody, LensKind,
+        Deform, Lens, LensBody,
         chosen::Choice,
         deform::Step,
-        kind::{Deformation, FeatureLens, FisheyeLens, Magnifier, SamplingLens},
-        ray::{Bend, Feature, Fisheye, FisheyeProjection, Magnify, RayLens, RayOutline, Sampling, SamplingRate},
+        kind::{Deformation, FeatureLens},
+        ray::{Bend, Feature, Magnify, RayLens},
     },
-    render::{
-        frame::Backend,
-        picture::{Aovs, Picture, Request, Studio},
-    },
-    scene::Scene,
-    view::{Camera, Projection, View},
+    render::{frame::Backend, picture::Studio},
+    view::{Camera, View},
 };
 
 pub use crate::studio::bent::*;
@@ -169,4 +165,64 @@ fn rays_are_followed_through_what_is_there_now() {
         assert!(box_of(&mut kept, lenses) == fresh, "raised by {factor} at {x}");
     }
     assert!(box_of(&mut kept, vec![glass()]) == box_of(&mut studio::synthetic(20), vec![glass()]), "at rest again");
+}
+
+/// A lens with `only` shows what it chose where its rays meet it, and all else where straight ones do: whichever is nearer.
+#[test]
+fn what_a_lens_chose_is_bent_and_nothing_else() {
+    let mut studio = studio::synthetic(40);
+    let size = [150, 100];
+    let chosen: Vec<usize> = (0..studio.model.objects.len()).filter(|i| i % 3 == 1).collect();
+    let ids = chosen.iter().map(|i| studio.model.objects[*i].id.to_string()).collect();
+    let only = Some(Choice { ids, ..Choice::default() });
+    let is_chosen = |object: u32| object % 3 == 1;
+    let mut moved = [0; 2];
+    for (c, camera) in cameras(&studio).into_iter().enumerate() {
+        for l in [0, 3, 5, 7] {
+            let mut bends = all()[l].clone();
+            bends.kind.ray_mut().expect("a lens that bends rays").only = only.clone();
+            let scene = studio::scene(camera, vec![bends.clone()]);
+            let picture = draw(&mut studio, &scene, size, Backend::Specialised);
+            let uber = draw(&mut studio, &scene, size, Backend::Uber);
+            assert!(picture.rgba == uber.rgba && picture.object_id == uber.object_id, "eye {c}, lens {l}");
+            let view = View::new(camera, size, &studio.extent()).expect("a view");
+            let sight = Sight::new(&studio, camera, size);
+            let reference = Bent::new(bends.ray().expect("a lens that bends rays"), &view);
+            let of = |wanted: bool| -> Vec<Face> {
+                let own = sight.faces.iter().filter(|face| is_chosen(face.object) == wanted);
+                own.map(|face| Face { corners: face.corners, object: face.object }).collect()
+            };
+            let [own, others] = [true, false].map(of);
+            let met = |pixel: DVec2| {
+                let place = sight.place(pixel);
+                let bent = first(&own, &path(&reference, place, sight.is_parallel), camera.near_m);
+                let straight = first(&others, &sight.straight(place), camera.near_m);
+                // Along the view axis; of a fisheye as far as they are.
+                let is_round = l == 7;
+                let depth = |(object, t): (u32, f64)| {
+                    let (_, direction) = plain_ray(place, sight.is_parallel);
+                    let is_far = is_round && !is_chosen(object);
+                    (object, if is_far { t * direction.z.abs() } else { t })
+                };
+                [bent, straight].into_iter().flatten().map(depth).min_by(|a, b| a.1.total_cmp(&b.1))
+            };
+            let (ids, depths) = (picture.object_id.expect("ids"), picture.depth.expect("depths"));
+            let mut wrong = 0;
+            for i in 0..ids.len() {
+                let pixel = sight.pixel(i);
+                let own = met(pixel);
+                let is_right = |found: Option<(u32, f64)>| match found {
+                    None => ids[i] == 0,
+                    Some((object, t)) => object + 1 == ids[i] && (t / f64::from(depths[i]) - 1.0).abs() < 1e-4,
+                };
+                // Beside the lens corners are drawn on the rasteriser's grid.
+                let around = (0..8).map(|k| RASTER_PX * DVec2::from_angle(f64::from(k) * std::f64::consts::FRAC_PI_4));
+                wrong += usize::from(!is_right(own) && !around.map(|by| met(pixel + by)).any(is_right));
+                let was = sight.id(&sight.straight(sight.place(pixel)));
+                moved[usize::from(ids[i] > 0 && is_chosen(ids[i] - 1))] += usize::from(was != ids[i]);
+            }
+            assert!(wrong == 0, "eye {c}, lens {l}: {wrong} pixels");
+        }
+    }
+    assert!(moved.iter().all(|count| *count > 1000), "{moved:?} pixels changed");
 }

@@ -15,7 +15,7 @@ use crate::{
     },
     lens::{
         LensKind,
-        ray::{Bend, Feature, Fisheye, FisheyeProjection, MOST_POINTS, RayLens, Sampling, SamplingRate},
+        ray::{Bend, Feature, Fisheye, FisheyeProjection, MOST_POINTS, RayLens, RayMethod, Sampling, SamplingRate},
     },
 };
 
@@ -231,6 +231,21 @@ const RAY_ROWS: &[Row<RayLens>] = &[
         Same,
         |lens: RayLens| lens.fineness
     ),
+    Row::<RayLens>::new(
+        key(
+            "only",
+            Kind::Table(&CHOICE),
+            "all of the city",
+            "",
+            "The city objects that it acts on; the others are seen as without it. Not of a feature lens, and only by `rays`.",
+            "{ types = [\"Building\"] }",
+        ),
+        |lens, options| lens.only.as_ref().map(|only| choice::written(only, options)),
+        |lens, given| {
+            let own = given.table(&CHOICE);
+            lens.only = Some(choice::read(given.reader, &own));
+        },
+    ),
     field!(
         key(
             "grid",
@@ -283,12 +298,13 @@ fn rate_problem(points: &[DVec2]) -> Option<String> {
 }
 
 /// The keys that only some kinds have, and the words of these.
-const OF_KINDS: [(&str, &[&str]); 11] = [
+const OF_KINDS: [(&str, &[&str]); 12] = [
     ("mask", &["magnifier"]),
     ("magnification", &["magnifier", "feature", "sampling"]),
     ("distance", &["magnifier", "feature"]),
     ("at", &["magnifier", "feature"]),
     ("of", &["feature"]),
+    ("only", &["magnifier", "sampling", "fisheye"]),
     ("center", &["magnifier", "sampling", "fisheye"]),
     ("outline", &["magnifier", "sampling", "fisheye"]),
     ("border", &["magnifier"]),
@@ -334,6 +350,10 @@ pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<Ray
         let all = kinds.iter().map(|kind| format!("\"{kind}\"")).collect::<Vec<_>>().join(" or ");
         let message = format!("has a meaning only for a lens of kind = {all}");
         reader.checker.note(&own.place, key, own.line(key), message);
+    }
+    if own.given("only") && ray.method != RayMethod::Rays {
+        let message = "goes with method = \"rays\" alone: others do not tell objects apart";
+        reader.checker.note(&own.place, "only", own.line("only"), message);
     }
     if own.given("mask") && own.given("outline") {
         let message = "is given together with outline: a lens has one of them";

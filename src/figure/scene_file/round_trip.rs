@@ -409,22 +409,28 @@ fn ray_lenses() -> impl Strategy<Value = LensKind> {
     let mask = prop::option::of("[a-zß]{1,6}[.]png");
     let place = (prop::array::uniform2(0.0..=1.0f64), 0.001..4.0f64, any::<bool>(), any::<bool>(), mask);
     let method = prop_oneof![Just(RayMethod::Rays), Just(RayMethod::Image), Just(RayMethod::Vertices)];
-    (bend, place, method, 0.1..=8.0f64).prop_map(|(bend, (center, radius, is_square, grid, mask), method, fineness)| {
-        let outline = if is_square { RayOutline::Square } else { RayOutline::Circle };
-        let mut ray = RayLens { radius, grid, method, fineness, ..RayLens::new(bend) };
-        if !matches!(ray.bend, Bend::Feature(_)) {
-            (ray.center, ray.outline) = (center.into(), outline);
-        }
-        if matches!(ray.bend, Bend::Magnify(_)) && !is_square {
-            ray.mask = mask.map(Into::into);
-        }
-        match &ray.bend {
-            Bend::Feature(_) => FeatureLens { ray }.into(),
-            Bend::Magnify(_) => Magnifier { ray }.into(),
-            Bend::Sample(_) => SamplingLens { ray }.into(),
-            Bend::Fisheye(_) => FisheyeLens { ray }.into(),
-        }
-    })
+    let only = prop::option::of(choices());
+    (bend, place, method, 0.1..=8.0f64, only).prop_map(
+        |(bend, (center, radius, is_square, grid, mask), method, fineness, only)| {
+            let outline = if is_square { RayOutline::Square } else { RayOutline::Circle };
+            let mut ray = RayLens { radius, grid, method, fineness, ..RayLens::new(bend) };
+            if !matches!(ray.bend, Bend::Feature(_)) {
+                (ray.center, ray.outline) = (center.into(), outline);
+            }
+            if matches!(ray.bend, Bend::Magnify(_)) && !is_square {
+                ray.mask = mask.map(Into::into);
+            }
+            if !matches!(ray.bend, Bend::Feature(_)) && method == RayMethod::Rays {
+                ray.only = only;
+            }
+            match &ray.bend {
+                Bend::Feature(_) => FeatureLens { ray }.into(),
+                Bend::Magnify(_) => Magnifier { ray }.into(),
+                Bend::Sample(_) => SamplingLens { ray }.into(),
+                Bend::Fisheye(_) => FisheyeLens { ray }.into(),
+            }
+        },
+    )
 }
 
 /// An aggregate of years, and of so many days later, with weights.

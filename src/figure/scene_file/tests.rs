@@ -520,7 +520,14 @@ fn every_mistake_in_a_lens_that_bends_rays_is_named() {
         ("magnifier", "border = 1.5", "ray.border: must be a number 0 to 1, is 1.5"),
         ("magnifier", "center = [0.5, 2]", "ray.center: must be"),
         ("magnifier", "distance = 0", "ray.distance: must be a number ≥ 0.001, is 0"),
-        ("magnifier", "method = \"warp\"", "ray.method: \"warp\" is none of rays, image, vertices"),
+        ("magnifier", "fineness = 9", "ray.fineness: must be a number 0.1 to 8, is 9"),
+        ("magnifier", "method = \"image\", only = { ids = [\"a\"] }", "ray.only: goes with method = \"rays\" alone"),
+        (
+            "feature",
+            "of = { ids = [\"a\"] }, only = { ids = [\"a\"] }",
+            "ray.only: has a meaning only for a lens of kind",
+        ),
+        ("magnifier", "method = \"warp\"", "ray.method: must be \"rays\" or \"image\" or \"vertices\", is \"warp\""),
         ("magnifier", "angle_deg = 90", "ray.angle_deg: has a meaning only for a lens of kind = \"fisheye\""),
         (
             "fisheye",

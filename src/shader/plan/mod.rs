@@ -36,6 +36,8 @@ pub struct Bends {
     pub planes: u32,
     /// Whether some of them have grids.
     pub grids: bool,
+    /// How many of them act on some objects alone.
+    pub choosing: u32,
 }
 
 impl Bends {
