@@ -132,13 +132,14 @@ fn both_back_ends_draw_random_scenes_the_same() {
 
 /// Lenses that bend rays, over a random scene.
 fn bends(seed: u64) -> &'static str {
-    const ALL: [&str; 8] = [
+    const ALL: [&str; 9] = [
         "kind = \"magnifier\"\nray = { center = [0.4, 0.5], radius = 0.4, method = \"image\" }",
         "kind = \"magnifier\"\nray = { center = [0.4, 0.5], radius = 0.4 }",
         "kind = \"sampling\"\nray = { radius = 0.45, magnification = 3.0, method = \"vertices\" }",
         "kind = \"fisheye\"\nray = { angle_deg = 280, method = \"image\", fineness = 1.5 }",
         "kind = \"magnifier\"\nray = { radius = 0.4, method = \"vertices\" }\n[[lens]]\nname = \"b1\"\nkind = \"magnifier\"\n\
          ray = { center = [0.6, 0.6], radius = 0.3, method = \"image\" }",
+        "kind = \"magnifier\"\nray = { radius = 0.4, only = { types = [\"Building\"] } }",
         "kind = \"sampling\"\nray = { radius = 0.45, magnification = 3.0 }",
         "kind = \"magnifier\"\nray = { radius = 0.45, magnification = 0.6, border = 0.8, outline = \"square\", grid = true }\n[[lens]]\nname = \"b1\"\n\
          kind = \"magnifier\"\nray = { center = [0.6, 0.6], radius = 0.3 }\neffects = [\"sepia\"]",

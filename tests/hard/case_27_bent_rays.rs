@@ -225,4 +225,18 @@ fn what_a_lens_chose_is_bent_and_nothing_else() {
         }
     }
     assert!(moved.iter().all(|count| *count > 1000), "{moved:?} pixels changed");
+    // Lines and what is seen through go with it.
+    let mut bends = all()[0].clone();
+    bends.kind.ray_mut().expect("a lens that bends rays").only = only;
+    let around = Shape::Sphere { center: studio.extent().center(), radius: 40.0 };
+    let camera = cameras(&studio)[0];
+    let mut of = |effects: &[&str], backend| {
+        let lenses = effects.iter().map(|effect| studio::lens(effect, [around.clone()], effect));
+        let lenses = std::iter::once(bends.clone()).chain(lenses).collect();
+        draw(&mut studio, &studio::scene(camera, lenses), size, backend).rgba
+    };
+    for effects in [&["edges"][..], &["transparent"]] {
+        let [one, other] = [Backend::Specialised, Backend::Uber].map(|backend| of(effects, backend));
+        assert!(one == other && one != of(&[], Backend::Specialised), "{effects:?}");
+    }
 }

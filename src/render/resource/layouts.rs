@@ -41,7 +41,7 @@ pub static PLANES: GroupLayout =
 pub static SHADE: GroupLayout = GroupLayout {
     label: "shade",
     entries: &[
-        (0, S::FRAGMENT, NUMBERS),
+        (0, DRAWN, NUMBERS),
         (1, S::FRAGMENT, STORAGE),
         (2, S::FRAGMENT, STORAGE),
         (3, DRAWN, UNIFORM),
@@ -61,7 +61,7 @@ pub static LENSES: GroupLayout = GroupLayout {
     label: "lenses",
     entries: &[
         (0, S::FRAGMENT, LAYERED_FLOATS),
-        (1, S::FRAGMENT, STORAGE),
+        (1, DRAWN, STORAGE),
         (2, DRAWN, UNIFORM),
         (3, S::FRAGMENT, UNIFORM),
         (4, S::FRAGMENT, WRITTEN_MASKS),
