@@ -305,16 +305,26 @@ fn rest_of(hit: Hit) -> u32 {
     return ray_cities.all[hit.city].boxes + ray_words[hit.triangle + 2u].w + select(0u, 2u, is_in_plane);
 }
 
-// The weights of the corners where a line meets the plane of a triangle.
-fn weights_beside(at: vec2f, hit: Hit) -> vec2f {
-    let ray = city_ray(hit.city, bent_ray(across_of_pixel(at), hit.t));
+// Where a line meets the plane of a triangle: the weights of its second and third corner, and how far.
+fn plane_met(hit: Hit, line: Ray) -> vec3f {
+    let ray = city_ray(hit.city, line);
     let a = sheared(ray, ray_words[hit.triangle]);
     let b = sheared(ray, ray_words[hit.triangle + 1u]);
     let c = sheared(ray, ray_words[hit.triangle + 2u]);
     let u = b.x * c.y - b.y * c.x;
     let v = c.x * a.y - c.y * a.x;
     let w = a.x * b.y - a.y * b.x;
-    return vec2f(v, w) / (u + v + w);
+    let sum = u + v + w;
+    var t = (u * a.z + v * b.z + w * c.z) / sum / component(ray.direction, ray.axes.z);
+    if (ray_words[hit.triangle + 1u].w & TRIANGLE_IN_PLANE) != 0u {
+        t = distance_to_plane(ray, ray_cities.all[hit.city].boxes + ray_words[hit.triangle + 2u].w, t);
+    }
+    return vec3f(vec2f(v, w) / sum, t);
+}
+
+// The weights of the corners where the line of a pixel meets it.
+fn weights_beside(at: vec2f, hit: Hit) -> vec2f {
+    return plane_met(hit, bent_ray(across_of_pixel(at), hit.t)).xy;
 }
 
 fn texcoords_of(rest: u32) -> mat3x2f {
@@ -367,4 +377,13 @@ fn look_of(at: vec2f, hit: Hit) -> HitLook {
         share = facade_share(at, hit, rest);
     }
     return HitLook(surface.color * share, share, select(0u, normal, SMOOTH));
+}
+
+// What passes write of what they find, where geometry passes write what they draw.
+struct Followed {
+    @location(0) code: vec2u,
+    @location(1) color: vec4f,
+    @location(2) own_depth: f32,
+    @location(3) hit: vec2u,    // triangle + 1, city: whose images are looked at then
+    @builtin(frag_depth) depth: f32,
 }

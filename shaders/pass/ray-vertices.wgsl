@@ -50,35 +50,10 @@ fn vertex_moved(@builtin(vertex_index) index: u32, @location(0) piece: vec3u) ->
     return Moved(clip, piece.xy, weights, select(0.0, 1.0, is_shown));
 }
 
-struct Followed {
-    @location(0) code: vec2u,
-    @location(1) color: vec4f,
-    @location(2) own_depth: f32,
-    @location(3) hit: vec2u,    // triangle + 1, city: whose images are looked at then
-    @builtin(frag_depth) depth: f32,
-}
-
 // Whether a pixel shows what lenses that move corners make of the city, and no lens that finds it otherwise.
 fn is_moved(pixel: vec2f) -> bool {
     let over = lenses_over(pixel);
     return (over & ray_lenses.moved) != 0u && (over & (ray_lenses.followed | ray_lenses.warped)) == 0u;
-}
-
-// Where a line meets the plane of a triangle: the weights of its second and third corner, and how far.
-fn plane_met(hit: Hit, line: Ray) -> vec3f {
-    let ray = city_ray(hit.city, line);
-    let a = sheared(ray, ray_words[hit.triangle]);
-    let b = sheared(ray, ray_words[hit.triangle + 1u]);
-    let c = sheared(ray, ray_words[hit.triangle + 2u]);
-    let u = b.x * c.y - b.y * c.x;
-    let v = c.x * a.y - c.y * a.x;
-    let w = a.x * b.y - a.y * b.x;
-    let sum = u + v + w;
-    var t = (u * a.z + v * b.z + w * c.z) / sum / component(ray.direction, ray.axes.z);
-    if (ray_words[hit.triangle + 1u].w & TRIANGLE_IN_PLANE) != 0u {
-        t = distance_to_plane(ray, ray_cities.all[hit.city].boxes + ray_words[hit.triangle + 2u].w, t);
-    }
-    return vec3f(vec2f(v, w) / sum, t);
 }
 
 @fragment

@@ -7,14 +7,6 @@ fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
 }
 
-struct Followed {
-    @location(0) code: vec2u,
-    @location(1) color: vec4f,
-    @location(2) own_depth: f32,
-    @location(3) hit: vec2u,    // triangle + 1, city: whose images are looked at then
-    @builtin(frag_depth) depth: f32,
-}
-
 @fragment
 fn follow(@builtin(position) place: vec4f) -> Followed {
     if (lenses_over(place.xy) & ray_lenses.followed) == 0u {

@@ -24,6 +24,10 @@ use crate::{
 pub(super) const MOST_SOURCES: usize = 48;
 /// Texels of an image, along an axis, at most.
 const MOST_SIDE: f64 = 4096.0;
+/// Texels of all images, which are layers of one size: at most 12 to 24 bytes each, a quarter to half a gibibyte.
+const MOST_TEXELS: f64 = (1 << 24) as f64 * 1.5;
+/// Coarser than this share of what lenses ask for they are not made.
+const LEAST_SHARE: f64 = 1e-4;
 /// Texels of the whole picture, of which an image is a part, along an axis, at most.
 const MOST_WHOLE: f64 = 60_000.0;
 /// Places of a lens, along an axis, that are asked what is seen there.
@@ -84,14 +88,30 @@ struct Lens<'a> {
     round: Option<(f64, FisheyeProjection)>,
 }
 
-/// The images of a tile of a picture, the finest first.
+/// The images of a tile of a picture, the finest first: as fine as the lenses ask for, or where that were too many texels, as there may be.
 pub(super) fn sources(paths: &RayPaths, view: &View, tile: PictureTile) -> Vec<RaySource> {
+    let mut share = 1.0;
+    loop {
+        let all = sources_of(paths, view, tile, share);
+        let side = |axis: usize| all.iter().map(|source| source.tile.size[axis]).max().unwrap_or_default();
+        let texels = f64::from(side(0)) * f64::from(side(1)) * all.len() as f64;
+        // Some may be as large as they can be until they are much coarser.
+        if texels <= MOST_TEXELS || share < LEAST_SHARE {
+            return all;
+        }
+        share *= 0.98 * (MOST_TEXELS / texels).sqrt();
+    }
+}
+
+/// The same, where texels to a pixel are this share of what lenses ask for.
+fn sources_of(paths: &RayPaths, view: &View, tile: PictureTile, share: f64) -> Vec<RaySource> {
     let mut all: Vec<RaySource> = Vec::new();
     for lens in lenses(paths).filter(|lens| lens.rim.method == RayMethod::Image) {
         let Some(part) = bent::part_of(lens.rim, view, tile) else { continue };
+        let fineness = share * lens.rim.fineness;
         match lens.round {
-            Some((angle, projection)) => all.extend(faces(lens.rim, view, angle, projection)),
-            None => all.extend(flat(paths, &lens, view, tile, part.rectangle())),
+            Some((angle, projection)) => all.extend(faces(lens.rim, view, angle, projection, fineness)),
+            None => all.extend(flat(paths, &lens, view, tile, part.rectangle(), fineness)),
         }
     }
     all.sort_by(|a, b| a.texel.total_cmp(&b.texel));
@@ -115,7 +135,14 @@ fn lenses(paths: &RayPaths) -> impl Iterator<Item = Lens<'_>> {
 }
 
 /// The image of a lens that looks into the picture.
-fn flat(paths: &RayPaths, lens: &Lens, view: &View, tile: PictureTile, part: PictureTile) -> Option<RaySource> {
+fn flat(
+    paths: &RayPaths,
+    lens: &Lens,
+    view: &View,
+    tile: PictureTile,
+    part: PictureTile,
+    fineness: f64,
+) -> Option<RaySource> {
     let half = view.half_extent();
     let size = DVec2::new(view.size[0].into(), view.size[1].into());
     let first = DVec2::new(f64::from(tile.origin[0] + part.origin[0]), f64::from(tile.origin[1] + part.origin[1]));
@@ -130,7 +157,7 @@ fn flat(paths: &RayPaths, lens: &Lens, view: &View, tile: PictureTile, part: Pic
         }
     }
     let pixel = 2.0 * half.y / size.y;
-    let wanted = pixel / (lens.magnifies * lens.rim.fineness);
+    let wanted = pixel / (lens.magnifies * fineness);
     let margin = MARGIN * (high - low);
     (low, high) = (low - margin, high + margin);
     // So far from the axis the whole picture goes, and so far its part.
@@ -179,7 +206,7 @@ fn seen_along(pieces: &[PathPiece], is_parallel: bool) -> impl Iterator<Item = D
 }
 
 /// The faces of a cube that a fisheye looks at.
-fn faces(rim: &Rim, view: &View, angle: f64, projection: FisheyeProjection) -> Vec<RaySource> {
+fn faces(rim: &Rim, view: &View, angle: f64, projection: FisheyeProjection, fineness: f64) -> Vec<RaySource> {
     let size = DVec2::new(view.size[0].into(), view.size[1].into());
     let radius_px = rim.radius / (2.0 * view.half_extent().y) * size.y;
     let per_radius = match projection {
@@ -192,7 +219,7 @@ fn faces(rim: &Rim, view: &View, angle: f64, projection: FisheyeProjection) -> V
         RayOutline::Square => 0.5 * angle * std::f64::consts::SQRT_2,
     };
     // Texels of a face at distance 1, where it looks straight ahead.
-    let density = radius_px / per_radius * rim.fineness;
+    let density = radius_px / per_radius * fineness;
     let half = 1.0 + MARGIN_TEXELS / density.max(MARGIN_TEXELS);
     let side = (2.0 * half * density).ceil().clamp(2.0, MOST_SIDE);
     // The axes of the fisheye, in the world.

@@ -109,7 +109,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
             }));
         }
     }
-    check_features(scene, model, &mut problems);
+    check_bent(scene, model, &mut problems);
     for (i, poi) in scene.pois.iter().enumerate() {
         let PoiPlace::Object(id) = &poi.place else { continue };
         if model.find_object(id).is_none() {
@@ -169,17 +169,19 @@ fn check_occluders(of: &Occluders, table: &str, scene: &Scene, model: &CityModel
     }
 }
 
-/// What lenses magnify in its own outline.
-fn check_features(scene: &Scene, model: &CityModel, problems: &mut Vec<SceneProblem>) {
-    for (i, lens) in scene.lenses.iter().enumerate() {
-        let feature = lens.ray().and_then(|ray| ray.bend.feature());
-        let named = feature.into_iter().flat_map(|feature| absent(model, &feature.of));
-        problems.extend(named.map(|(key, message)| SceneProblem {
-            table: format!("lens.{i}"),
-            is_error: key == "attribute",
-            key: format!("ray.of.{key}"),
-            message: format!("chooses nothing: {message}"),
-        }));
+/// What lenses that bend rays magnify in its own outline, and what they act on alone.
+fn check_bent(scene: &Scene, model: &CityModel, problems: &mut Vec<SceneProblem>) {
+    for (i, ray) in scene.lenses.iter().enumerate().filter_map(|(i, lens)| Some((i, lens.ray()?))) {
+        let chosen = [("of", ray.bend.feature().map(|feature| &feature.of)), ("only", ray.only.as_ref())];
+        for (at, choice) in chosen {
+            let named = choice.into_iter().flat_map(|choice| absent(model, choice));
+            problems.extend(named.map(|(key, message)| SceneProblem {
+                table: format!("lens.{i}"),
+                is_error: key == "attribute",
+                key: format!("ray.{at}.{key}"),
+                message: format!("chooses nothing: {message}"),
+            }));
+        }
     }
 }
 
@@ -220,7 +222,7 @@ mod tests {
         lens::{
             EffectUse, Lens, Parameter,
             chosen::Choice,
-            kind::FeatureLens,
+            kind::{FeatureLens, Magnifier},
             ray::{Bend, RayLens},
         },
         scene::model::Poi,
@@ -320,7 +322,7 @@ mod tests {
     }
 
     #[test]
-    fn features_that_the_city_lacks_are_told() {
+    fn what_the_city_lacks_of_lenses_that_bend_rays_is_told() {
         let mut scene = Scene::default();
         let model = town_hall();
         let mut lens = Lens::plain("glass", FeatureLens { ray: RayLens::feature() }, [0.5; 3]);
@@ -329,9 +331,14 @@ mod tests {
         };
         feature.of = Choice { ids: vec!["town-hall".into(), "townhall".into()], ..Choice::default() };
         scene.lenses.push(lens);
+        let only = Some(Choice { ids: vec!["town-hal".into()], ..Choice::default() });
+        let ray = RayLens { only, ..RayLens::magnifier() };
+        scene.lenses.push(Lens::plain("some", Magnifier { ray }, [0.5; 3]));
         let messages: Vec<String> = check_against(&scene, &model).iter().map(ToString::to_string).collect();
         let expected =
-            "[lens.0] ray.of.ids.1: chooses nothing: the city has no object \"townhall\"; did you mean \"town-hall\"?";
-        assert_eq!(messages, [expected]);
+            [("[lens.0] ray.of.ids.1", "townhall"), ("[lens.1] ray.only.ids.0", "town-hal")].map(|(at, id)| {
+                format!("{at}: chooses nothing: the city has no object \"{id}\"; did you mean \"town-hall\"?")
+            });
+        assert_eq!(messages, expected);
     }
 }

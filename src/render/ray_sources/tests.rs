@@ -123,6 +123,16 @@ fn images_have_as_many_texels_as_the_lens_magnifies() {
 }
 
 #[test]
+fn images_of_a_large_picture_take_no_more_than_they_may() {
+    let view = view(false, [7680, 4320]);
+    let lenses = [RayLens { fineness: 8.0, ..fisheye(300.0) }, RayLens { fineness: 8.0, ..magnifier(6.0, 0.4) }];
+    let all = sources(&paths(&lenses, &view), &view, PictureTile::whole(view.size));
+    let side = |axis: usize| all.iter().map(|source| u64::from(source.tile.size[axis])).max().expect("some");
+    let texels = side(0) * side(1) * all.len() as u64;
+    assert!(all.len() == 7 && texels < 26_000_000 && texels > 10_000_000, "{texels} texels of {} images", all.len());
+}
+
+#[test]
 fn the_finest_image_comes_first_and_only_lenses_that_ask_have_one() {
     let view = view(false, [320, 200]);
     let whole = PictureTile::whole(view.size);
