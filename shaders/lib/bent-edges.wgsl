@@ -87,6 +87,57 @@ fn shown_by_fisheye(lens: u32, p: vec3f) -> vec3f {
     return vec3f(own.center + own.radius * share * way, select(-1.0, distance, is_in));
 }
 
+// Where it is looked for first along each axis of the square around the lens, and how often it is looked for nearer.
+const OWN_STARTS: i32 = 5;
+const OWN_ROUNDS: i32 = 10;
+// How near it is found: of a radian, or of the radius of a lens of parallel rays.
+const OWN_NEAR_ENOUGH: f32 = 1e-3;
+
+// What a lens of a user's handler shows at a place of it, as a direction; with parallel rays as a place of the picture, in radii.
+fn own_shown(lens: u32, across: vec2f) -> vec3f {
+    let seen = own_seen(lens, across);
+    let flat = vec3f((seen.xy / seen.z - ray_lens(lens).center) / ray_lens(lens).radius, 0.0);
+    return select(normalize(vec3f(seen.xy, -seen.z)), flat, view.orthographic == 1u);
+}
+
+// The place of the picture at which a lens of a user's handler shows a place of view space, and how far that is along its ray; z < 0: at none that
+// is found. Its inverse nobody says: from the nearest of some places on it is looked for by differences (Gauss and Newton).
+fn shown_by_own(lens: u32, p: vec3f) -> vec3f {
+    let own = ray_lens(lens);
+    let is_flat = view.orthographic == 1u;
+    let wanted = select(normalize(p), vec3f((p.xy - own.center) / own.radius, 0.0), is_flat);
+    var at = select(own.center, p.xy / -p.z, p.z < 0.0);
+    at = select(at, p.xy, is_flat);
+    var away = select(FAR_AWAY, length(own_shown(lens, at) - wanted), rim_share(lens, at) < 1.0);
+    for (var i = 0; i < OWN_STARTS * OWN_STARTS; i++) {
+        let place = vec2f(f32(i % OWN_STARTS), f32(i / OWN_STARTS)) * (2.0 / f32(OWN_STARTS - 1)) - 1.0;
+        let start = own.center + 0.9 * own.radius * place;
+        let off = length(own_shown(lens, start) - wanted);
+        let is_nearer = off < away && rim_share(lens, start) < 1.0;
+        away = select(away, off, is_nearer);
+        at = select(at, start, is_nearer);
+    }
+    let step = 1e-3 * own.radius;
+    for (var i = 0; i < OWN_ROUNDS && away > 0.01 * OWN_NEAR_ENOUGH; i++) {
+        let off = own_shown(lens, at) - wanted;
+        let x = (own_shown(lens, at + vec2f(step, 0.0)) - wanted - off) / step;
+        let y = (own_shown(lens, at + vec2f(0.0, step)) - wanted - off) / step;
+        let both = mat2x2f(dot(x, x), dot(x, y), dot(x, y), dot(y, y));
+        let turned = vec2f(dot(x, off), dot(y, off));
+        let determinant = determinant(both);
+        let by = vec2f(both[1][1] * turned.x - both[0][1] * turned.y, both[0][0] * turned.y - both[0][1] * turned.x) / determinant;
+        // No farther than the lens at once.
+        let way = by * min(1.0, own.radius / max(length(by), 1e-30));
+        let next = select(at, at - way, determinant > 1e-20);
+        let now = length(own_shown(lens, next) - wanted);
+        at = select(at, next, now < away);
+        away = min(away, now);
+    }
+    let is_in = away < OWN_NEAR_ENOUGH && rim_share(lens, at) < 1.0;
+    let is_place = is_place_of_picture(own_seen(lens, at)) & (p.z < 0.0);
+    return vec3f(at, select(-1.0, select(length(p), -p.z, is_place | is_flat), is_in));
+}
+
 // Where a place would be, in view space, if no lens bent the ray that shows it.
 fn displayed(p: vec3f) -> vec3f {
     let is_flat = view.orthographic == 1u;
@@ -102,7 +153,13 @@ fn displayed(p: vec3f) -> vec3f {
         let is_sampled = ray_lens(lens).kind == RAY_SAMPLED;
         let scale = select(max(-shown.z, view.near), 1.0, is_flat);
         let is_within = shown.z < 0.0 && rim_share(lens, shown.xy / scale) < 1.0;
-        let at = shown_by_fisheye(lens, p);
+        let is_own = HAS_OWN_RAYS & (ray_lens(lens).kind == RAY_OWN);
+        var at = vec3f(0.0);
+        if is_own {
+            at = shown_by_own(lens, shown);
+        } else {
+            at = shown_by_fisheye(lens, p);
+        }
         if !acts(lens) {
             continue;
         }

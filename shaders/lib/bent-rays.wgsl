@@ -21,6 +21,7 @@ const RAY_PLANE: u32 = 0u;
 const RAY_SAMPLED: u32 = 1u;
 const RAY_ANGULAR: u32 = 2u;
 const RAY_HEMISPHERICAL: u32 = 3u;
+const RAY_OWN: u32 = 4u;           // as a handler of the user's says, whose number is in knots, whose parameters begin at first_knot
 const OUTLINE_SQUARE: u32 = 1u;
 const OUTLINE_FIELD: u32 = 2u;      // told by a field, whose number is in first_knot
 const FIELD_SIDE: u32 = 512u;       // texels
@@ -174,6 +175,25 @@ fn round_ray(lens: u32, across: vec2f) -> Ray {
     return Ray(vec3f(0.0), normalize(cosine * forward + slope * (place.x * right + place.y * up)));
 }
 
+// Slopes beyond which what a handler says is a direction, not a place of the picture.
+const MOST_SLOPE: f32 = 64.0;
+
+// What a handler of the user's shows at a place of the picture, homogeneous: x, y and -z of view space; contained: where that is nothing that can be
+// seen, the place itself.
+fn own_seen(lens: u32, across: vec2f) -> vec3f {
+    let own = ray_lens(lens);
+    let is_flat = view.orthographic == 1u;
+    let size = vec3f(own.radius, own.radius, select(1.0, 0.0, is_flat));
+    let said = said_of_place(lens, (across - own.center) / own.radius, size);
+    let seen = vec3f(own.center * said.z + own.radius * said.xy, said.z);
+    let is_right = all(abs(seen) <= vec3f(3e38)) & any(seen != vec3f(0.0)) & ((seen.z > 0.0) | !is_flat);
+    return select(vec3f(across, 1.0), seen, is_right);
+}
+
+fn is_place_of_picture(seen: vec3f) -> bool {
+    return (view.orthographic == 1u) | ((seen.z > 0.0) & (max(abs(seen.x), abs(seen.y)) <= MOST_SLOPE * seen.z));
+}
+
 // The path of a ray that begins at a place of the picture.
 fn path_of_place(place: vec2f) -> Path {
     var across = place;
@@ -181,8 +201,15 @@ fn path_of_place(place: vec2f) -> Path {
     for (var lens = 0u; lens < RAY_IMAGES; lens++) {
         let share = rim_share(lens, across);
         let is_sampled = ray_lens(lens).kind == RAY_SAMPLED;
+        let is_own = HAS_OWN_RAYS & (ray_lens(lens).kind == RAY_OWN);
         let is_met = share < 1.0 && !path.is_round && acts(lens);
-        if is_met && !is_sampled {
+        if is_met && is_own {
+            let seen = own_seen(lens, across);
+            path.is_round = !is_place_of_picture(seen);
+            path.ray = Ray(vec3f(0.0), normalize(vec3f(seen.xy, -seen.z)));
+            across = select(seen.xy / seen.z, across, path.is_round);
+        }
+        if is_met && !is_sampled && !is_own {
             path.ray = round_ray(lens, across);
             path.is_round = true;
         }

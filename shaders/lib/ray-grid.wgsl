@@ -12,7 +12,8 @@ fn grid_place(lens: u32, pixel: vec2f) -> vec2f {
     let flat = (select(at / distance, at, view.orthographic == 1u) - ray_lens(lens).center) / ray_lens(lens).grid;
     let d = ray.direction;
     let round = vec2f(atan2(d.x, -d.z), atan2(d.y, length(d.xz))) / GRID_ANGLE;
-    return select(flat, round, ray_lens(lens).kind >= RAY_ANGULAR);
+    let kind = ray_lens(lens).kind;
+    return select(flat, round, (kind >= RAY_ANGULAR) & ((kind != RAY_OWN) | (d.z != -1.0)));
 }
 
 // How much of a pixel lines cover, along one axis; `turn`: how far the next pixels are in it.

@@ -105,6 +105,8 @@ impl Window {
                 SamplingRate::Cubic(middle) => ("magnification", Data::from(magnified(middle))),
                 SamplingRate::Points(_) => return false,
             },
+            // What its handler's parameters do, nobody knows.
+            Bend::Own(_) => return false,
             // The less it shows, the larger that is.
             Bend::Fisheye(fisheye) => {
                 let angle = fisheye.angle.to_degrees() / factor;

@@ -22,6 +22,7 @@ pub mod links;
 pub mod measures;
 pub mod nearest;
 pub mod occluders;
+pub mod own_bend;
 pub mod own_region;
 pub mod placement;
 pub mod ramp;

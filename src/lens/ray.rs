@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use glam::DVec2;
 
-use crate::lens::chosen::Choice;
+use crate::lens::{chosen::Choice, handled::Handled};
 
 /// What a lens that bends rays has of its own.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +63,8 @@ pub enum Bend {
     Sample(Sampling),
     /// From the eye into all directions (Wang et al. §3.4).
     Fisheye(Fisheye),
+    /// As a handler of the user's says ([`crate::lens::own_bend`]).
+    Own(Handled),
 }
 
 /// What a magnifier does.
@@ -162,6 +164,11 @@ impl RayLens {
         let bend = Fisheye { angle: std::f64::consts::PI, projection: FisheyeProjection::Angular };
         Self { radius: 0.5, ..Self::new(Bend::Fisheye(bend)) }
     }
+
+    /// A lens of a user's handler, none so far.
+    pub fn own() -> Self {
+        Self::new(Bend::Own(Handled::nameless()))
+    }
 }
 
 impl Bend {
@@ -169,7 +176,7 @@ impl Bend {
     pub fn magnify(&self) -> Option<&Magnify> {
         match self {
             Self::Magnify(magnify) | Self::Feature(Feature { magnify, .. }) => Some(magnify),
-            Self::Sample(_) | Self::Fisheye(_) => None,
+            Self::Sample(_) | Self::Fisheye(_) | Self::Own(_) => None,
         }
     }
 
@@ -177,7 +184,7 @@ impl Bend {
     pub fn magnify_mut(&mut self) -> Option<&mut Magnify> {
         match self {
             Self::Magnify(magnify) | Self::Feature(Feature { magnify, .. }) => Some(magnify),
-            Self::Sample(_) | Self::Fisheye(_) => None,
+            Self::Sample(_) | Self::Fisheye(_) | Self::Own(_) => None,
         }
     }
 
@@ -185,7 +192,7 @@ impl Bend {
     pub fn feature(&self) -> Option<&Feature> {
         match self {
             Self::Feature(feature) => Some(feature),
-            Self::Magnify(_) | Self::Sample(_) | Self::Fisheye(_) => None,
+            Self::Magnify(_) | Self::Sample(_) | Self::Fisheye(_) | Self::Own(_) => None,
         }
     }
 }
@@ -221,7 +228,7 @@ impl SamplingRate {
 }
 
 /// Knots of a [`SampledRadius`].
-pub const SAMPLED_KNOTS: usize = 128;
+pub const SAMPLED_KNOTS: usize = crate::shader::RAY_NUMBERS;
 /// Points of a drawn rate, at most.
 pub const MOST_POINTS: usize = 32;
 

@@ -15,7 +15,12 @@
 //! where f has one, and of several lenses that a ray meets powers add: one that makes things smaller by as much undoes another one.
 //! The focal point lies on the line of sight through the lens' middle, not straight before it: what is in the middle stays there.
 
-use std::{borrow::Cow, collections::BTreeMap, path::Path, sync::Arc};
+use std::{
+    borrow::Cow,
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+    sync::Arc,
+};
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -23,14 +28,14 @@ use crate::{
     geom::{Shape, shape::FlatFigure},
     lens::{
         chosen::Choice,
+        own_bend::{OwnBend, Seen},
         ray::{Bend, Feature, FisheyeProjection, Magnify, RayLens, RayMethod, RayOutline, SampledRadius},
         share_field::{self, ShareField},
     },
+    shader::MOST_RAY_LENSES,
     view::{Camera, Projection},
 };
 
-/// Lenses that bend rays, of one picture at most.
-pub const MOST_RAY_LENSES: usize = 8;
 /// Of these, at most, act on some objects alone: rays are followed for each set of lenses that act on something.
 pub const MOST_CHOOSING: usize = 3;
 
@@ -114,6 +119,8 @@ pub enum ImageBend {
     Sampled(SampledRadius),
     /// Directions around that of its middle: the angle from rim to rim, and how angles lie in it.
     Round(f64, FisheyeProjection),
+    /// What a handler of the user's says.
+    Own(OwnBend),
 }
 
 /// The lenses of a view that bend rays.
@@ -239,6 +246,9 @@ impl RayPaths {
                 Bend::Fisheye(fisheye) => {
                     paths.images.push(image(rim, ImageBend::Round(fisheye.angle, fisheye.projection)));
                 }
+                Bend::Own(used) => {
+                    paths.images.extend(OwnBend::new(used).ok().map(|own| image(rim, ImageBend::Own(own))));
+                }
             }
         }
         paths.images.reverse();
@@ -250,9 +260,25 @@ impl RayPaths {
         self.images.is_empty() && self.planes.is_empty()
     }
 
-    /// Whether a fisheye looks in other directions than the view.
+    /// Whether some lens looks in other directions than the view.
     pub fn looks_around(&self) -> bool {
-        self.images.iter().any(|lens| matches!(lens.bend, ImageBend::Round(..)))
+        self.images.iter().any(|lens| match &lens.bend {
+            ImageBend::Sampled(_) => false,
+            ImageBend::Round(..) => true,
+            ImageBend::Own(own) => own.extent(&lens.rim, self.is_parallel).turn.is_some(),
+        })
+    }
+
+    /// The numbers of the ray handlers of users among them, ascending, each once, and 0 behind these.
+    pub fn own_handlers(&self) -> [u16; MOST_RAY_LENSES] {
+        let of = |lens: &ImageLens| match &lens.bend {
+            ImageBend::Own(own) => Some(own.handler as u16),
+            _ => None,
+        };
+        let all: BTreeSet<u16> = self.images.iter().filter_map(of).collect();
+        let mut found = [0; MOST_RAY_LENSES];
+        found.iter_mut().zip(all).for_each(|(slot, handler)| *slot = handler);
+        found
     }
 
     /// The numbers of the lenses, ascending.
@@ -303,7 +329,7 @@ impl RayPaths {
                 // Between knots it may be a little more.
                 Some(1.1 * radius.knots.iter().map(at).fold(1.0, f64::max))
             }
-            ImageBend::Round(..) => None,
+            ImageBend::Round(..) | ImageBend::Own(_) => None,
         };
         // By the most that a plane takes from what is seen: where the ray goes on.
         let of_plane = |lens: &PlaneLens| {
@@ -343,6 +369,13 @@ impl RayPaths {
                     let line = self.round(&lens.rim, place, *angle, *projection);
                     return vec![PathPiece { range: [0.0, f64::INFINITY], line }];
                 }
+                ImageBend::Own(own) => match own.seen(place, lens.rim.center, lens.rim.radius, self.is_parallel) {
+                    Seen::Place(seen) => place = seen,
+                    Seen::Direction(direction) => {
+                        let line = ViewLine { origin: DVec3::ZERO, direction };
+                        return vec![PathPiece { range: [0.0, f64::INFINITY], line }];
+                    }
+                },
             }
         }
         let (mut origin, mut slope) = if self.is_parallel { (place, DVec2::ZERO) } else { (DVec2::ZERO, place) };

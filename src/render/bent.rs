@@ -5,10 +5,11 @@ use glam::DVec2;
 use crate::{
     lens::{
         ray::{FisheyeProjection, RayMethod, RayOutline, SAMPLED_KNOTS},
-        ray_path::{ImageBend, MOST_RAY_LENSES, RayPaths, Rim},
+        ray_path::{ImageBend, RayPaths, Rim},
         share_field::ShareField,
     },
     render::{eye::PictureTile, layout, palette, screen_bound::ScreenBound},
+    shader::MOST_RAY_LENSES,
     view::View,
 };
 
@@ -76,6 +77,14 @@ pub(super) fn uniform(paths: &RayPaths) -> layout::RayLenses {
                     FisheyeProjection::Angular => layout::RAY_ANGULAR,
                     FisheyeProjection::Hemispherical => layout::RAY_HEMISPHERICAL,
                 };
+            }
+            ImageBend::Own(own) => {
+                lens.kind = layout::RAY_OWN;
+                (lens.first_knot, lens.knots) = (knots as u32, own.handler);
+                for (knot, four) in made.knots[knots..].iter_mut().zip(own.parameters.chunks(4)) {
+                    knot.iter_mut().zip(four).for_each(|(slot, number)| *slot = *number);
+                }
+                knots += own.parameters.len().div_ceil(4).min(SAMPLED_KNOTS);
             }
         }
     }

@@ -363,6 +363,8 @@ pub const RAY_SAMPLED: u32 = 1;
 pub const RAY_ANGULAR: u32 = 2;
 /// `lib/bent-rays.wgsl`.
 pub const RAY_HEMISPHERICAL: u32 = 3;
+/// `lib/bent-rays.wgsl`.
+pub const RAY_OWN: u32 = 4;
 
 /// `lib/bent-rays.wgsl`.
 #[repr(C)]
@@ -375,7 +377,7 @@ pub struct RayEvent {
 }
 
 /// Lenses that bend rays, and what they have of knots.
-const RAY_LENSES: usize = crate::lens::ray_path::MOST_RAY_LENSES;
+const RAY_LENSES: usize = crate::shader::MOST_RAY_LENSES;
 const RAY_KNOTS: usize = RAY_LENSES * crate::lens::ray::SAMPLED_KNOTS;
 
 /// `lib/bent-rays.wgsl`.
@@ -713,8 +715,8 @@ mod tests {
         let shade = Module::Shade(Program::Specialised(Plan { lenses: vec![lens], ..Plan::default() }));
         let blur = crate::shader::effect::number_of("blur").expect("there is one");
         let uber = Module::Shade(Program::Uber(Uber::default()));
-        let rays = Module::Rays(None, crate::shader::Bends { images: 1, planes: 1, grids: false, choosing: 0 });
-        let warp = Module::RayWarp(crate::shader::Bends { images: 1, planes: 1, grids: false, choosing: 0 });
+        let rays = Module::Rays(None, crate::shader::Bends { images: 1, planes: 1, ..crate::shader::Bends::default() });
+        let warp = Module::RayWarp(crate::shader::Bends { images: 1, planes: 1, ..crate::shader::Bends::default() });
         let fields = Module::Composite(Program::Specialised(Plan { fields: true, ..Plan::default() }));
         let checks = [
             (

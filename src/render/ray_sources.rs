@@ -84,8 +84,32 @@ struct Lens<'a> {
     rim: &'a Rim,
     /// How many times as large it shows things, at most; at least 1.
     magnifies: f64,
-    /// Of a fisheye: its angle, and how angles lie in it.
-    round: Option<(f64, FisheyeProjection)>,
+    /// Where it looks in other directions than the picture.
+    round: Option<Round>,
+}
+
+/// How a lens looks around.
+struct Round {
+    /// The widest angle from its middle, radians.
+    turn: f64,
+    /// The angle that a radius of it shows, where it shows things largest, radians.
+    per_radius: f64,
+}
+
+impl Round {
+    /// That of a fisheye.
+    fn of_fisheye(rim: &Rim, angle: f64, projection: FisheyeProjection) -> Self {
+        let per_radius = match projection {
+            FisheyeProjection::Angular => 0.5 * angle,
+            FisheyeProjection::Hemispherical => (0.5 * angle).sin(),
+        };
+        // In the corners of a square it is more.
+        let turn = match rim.outline {
+            RayOutline::Circle => 0.5 * angle,
+            RayOutline::Square => 0.5 * angle * std::f64::consts::SQRT_2,
+        };
+        Self { turn, per_radius }
+    }
 }
 
 /// The images of a tile of a picture, the finest first: as fine as the lenses ask for, or where that were too many texels, as there may be.
@@ -110,7 +134,7 @@ fn sources_of(paths: &RayPaths, view: &View, tile: PictureTile, share: f64) -> V
         let Some(part) = bent::part_of(lens.rim, view, tile) else { continue };
         let fineness = share * lens.rim.fineness;
         match lens.round {
-            Some((angle, projection)) => all.extend(faces(lens.rim, view, angle, projection, fineness)),
+            Some(round) => all.extend(faces(lens.rim, view, &round, fineness)),
             None => all.extend(flat(paths, &lens, view, tile, part.rectangle(), fineness)),
         }
     }
@@ -123,7 +147,12 @@ fn lenses(paths: &RayPaths) -> impl Iterator<Item = Lens<'_>> {
     let images = paths.images.iter().map(|lens| match &lens.bend {
         ImageBend::Sampled(radius) => Lens { rim: &lens.rim, magnifies: radius.magnifies(), round: None },
         ImageBend::Round(angle, projection) => {
-            Lens { rim: &lens.rim, magnifies: 1.0, round: Some((*angle, *projection)) }
+            Lens { rim: &lens.rim, magnifies: 1.0, round: Some(Round::of_fisheye(&lens.rim, *angle, *projection)) }
+        }
+        ImageBend::Own(own) => {
+            let extent = own.extent(&lens.rim, paths.is_parallel);
+            let round = extent.turn.map(|turn| Round { turn, per_radius: extent.per_radius });
+            Lens { rim: &lens.rim, magnifies: extent.magnifies, round }
         }
     });
     let planes = paths.planes.iter().map(|lens| Lens {
@@ -206,18 +235,10 @@ fn seen_along(pieces: &[PathPiece], is_parallel: bool) -> impl Iterator<Item = D
 }
 
 /// The faces of a cube that a fisheye looks at.
-fn faces(rim: &Rim, view: &View, angle: f64, projection: FisheyeProjection, fineness: f64) -> Vec<RaySource> {
+fn faces(rim: &Rim, view: &View, round: &Round, fineness: f64) -> Vec<RaySource> {
     let size = DVec2::new(view.size[0].into(), view.size[1].into());
     let radius_px = rim.radius / (2.0 * view.half_extent().y) * size.y;
-    let per_radius = match projection {
-        FisheyeProjection::Angular => 0.5 * angle,
-        FisheyeProjection::Hemispherical => (0.5 * angle).sin(),
-    };
-    // In the corners of a square it is more.
-    let turn = match rim.outline {
-        RayOutline::Circle => 0.5 * angle,
-        RayOutline::Square => 0.5 * angle * std::f64::consts::SQRT_2,
-    };
+    let Round { turn, per_radius } = *round;
     // Texels of a face at distance 1, where it looks straight ahead.
     let density = radius_px / per_radius * fineness;
     let half = 1.0 + MARGIN_TEXELS / density.max(MARGIN_TEXELS);

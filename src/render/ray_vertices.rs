@@ -70,6 +70,8 @@ impl Reach {
                     let radius_px = lens.rim.radius / (2.0 * view.half_extent().y) * f64::from(view.size[1]);
                     round = round.max(radius_px / (0.5 * angle) * lens.rim.fineness);
                 }
+                // A handler has no inverse.
+                ImageBend::Own(_) => {}
             }
         }
         Self { round, ..reach }

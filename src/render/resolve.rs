@@ -10,8 +10,9 @@ use crate::{
     geom::Aabb,
     lens::{
         chosen::{Choice, members},
-        ray::RayLens,
-        ray_path::{Chosen, MOST_CHOOSING, MOST_RAY_LENSES, PictureFrame, RayPaths, Scenery},
+        own_bend::OwnBend,
+        ray::{Bend, RayLens},
+        ray_path::{Chosen, MOST_CHOOSING, PictureFrame, RayPaths, Scenery},
         solids::{ShownCity, Solids},
     },
     render::{
@@ -40,7 +41,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{Drawn, Scene, Sun, SunTime, Technique, Transparency},
-    shader::{Bends, MOST_SLOTS, MOST_VOLUMES},
+    shader::{Bends, MOST_RAY_LENSES, MOST_SLOTS, MOST_VOLUMES},
     time::Moment,
     view::{Camera, CameraError, View},
 };
@@ -182,6 +183,7 @@ impl Surroundings<'_> {
             planes: rays.planes.len() as u32,
             grids: rays.rims().any(|rim| rim.grid.is_some()),
             choosing,
+            own: rays.own_handlers(),
         });
         if !fields.is_empty() {
             operations.add_fields();
@@ -229,6 +231,12 @@ impl Surroundings<'_> {
         }
         for file in lenses.iter().filter_map(|(_, ray, _)| ray.mask.as_deref()) {
             masks.load(file).map_err(|error| ResolveError::Scene(format!("ray: mask: {error}")))?;
+        }
+        for (number, ray, _) in &lenses {
+            if let Bend::Own(used) = &ray.bend {
+                let wrong = |message| ResolveError::Scene(format!("lens {number}: ray.bend: {message}"));
+                OwnBend::new(used).map_err(wrong)?;
+            }
         }
         let frame = PictureFrame::new(&view.camera, view.size);
         let half = frame.half;

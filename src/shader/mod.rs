@@ -51,7 +51,7 @@ pub use forward::{Forward, ForwardKind};
 pub use lining::BENT_PARTS;
 pub use module::Module;
 pub use plan::{
-    Bends, Plan,
+    Bends, MOST_RAY_LENSES, Plan, RAY_NUMBERS,
     content::{Clip, MOST_CITIES, PlanContent},
     epoch::PlanEpoch,
     form::Form,

@@ -2,6 +2,7 @@
 
 use crate::shader::{
     effect::{
+        definition::EffectDefinition,
         prototype::{EffectKind, Mode},
         registry::handlers,
     },
@@ -12,20 +13,58 @@ use crate::shader::{
 /// that are bent `lib/bent-rays.wgsl` has both.
 pub(super) fn source(bends: Bends, is_carried: bool) -> String {
     if bends.is_any() {
-        let Bends { images, planes, grids, choosing } = bends;
+        let Bends { images, planes, grids, choosing, own } = bends;
         let lenses = if is_carried && bends.is_one() { CARRIED } else { IN_UNIFORM };
         let grids = if grids { "" } else { NO_GRIDS };
         let acting = if choosing > 0 { ON_SOME } else { ON_ALL };
+        let own = own_rays(&own);
         return format!(
-            "const RAY_IMAGES: u32 = {images}u;\nconst RAY_PLANES: u32 = {planes}u;\nconst RAY_CHOOSING: u32 = {choosing}u;\n{lenses}{acting}{grids}"
+            "const RAY_IMAGES: u32 = {images}u;\nconst RAY_PLANES: u32 = {planes}u;\nconst RAY_CHOOSING: u32 = {choosing}u;\n{lenses}{acting}{own}{grids}"
         );
     }
     let own = handlers().iter().find(|h| (h.kind, h.mode) == (EffectKind::Ray, Mode::Optional));
     let Some(own) = own else { unreachable!("the program has a ray of its own") };
     let name = own.wgsl_name();
     format!(
-        "{}\nfn ray_of_pixel(pixel: vec2f) -> Ray {{\n    return {name}(pixel);\n}}\n{STRAIGHT}{NO_GRIDS}",
+        "{}\nfn ray_of_pixel(pixel: vec2f) -> Ray {{
+    let is_flat = view.orthographic == 1u;
+    let across = pixel * view.across_from_pixel.xy + view.across_from_pixel.zw;
+    let seen = {name}(across, vec3f(1.0, 1.0, select(1.0, 0.0, is_flat)));
+    return Ray(vec3f(select(vec2f(0.0), seen.xy, is_flat), 0.0), vec3f(select(seen.xy, vec2f(0.0), is_flat), -seen.z));
+}}\n{STRAIGHT}{NO_GRIDS}",
         own.source
+    )
+}
+
+/// What is seen at a place of a lens with a handler of its user's, of the handlers of these numbers.
+fn own_rays(numbers: &[u16]) -> String {
+    let all = handlers();
+    let used = || numbers.iter().filter(|number| **number > 0).map(|number| (number, &all[usize::from(*number)]));
+    let sources: String = used().map(|(_, handler)| format!("{}\n", handler.source)).collect();
+    let call = |handler: &EffectDefinition| {
+        let parameters = match handler.slots() {
+            0 => String::new(),
+            _ => format!(", {}(ray_lens(lens).first_knot)", handler.own("parameters")),
+        };
+        format!("{}(place, size{parameters})", handler.wgsl_name())
+    };
+    let all: Vec<_> = used().collect();
+    let body = match all[..] {
+        [] => "    return vec3f(place, 1.0);\n".to_owned(),
+        [(_, only)] => format!("    return {};\n", call(only)),
+        _ => {
+            let case = |(number, handler): &(&u16, &EffectDefinition)| {
+                format!("        case {number}u: {{ return {}; }}\n", call(handler))
+            };
+            let cases: String = all.iter().map(case).collect();
+            format!(
+                "    switch ray_lens(lens).knots {{\n{cases}        default: {{ return vec3f(place, 1.0); }}\n    }}\n"
+            )
+        }
+    };
+    let has = !all.is_empty();
+    format!(
+        "\nconst HAS_OWN_RAYS = {has};\n\n{sources}fn said_of_place(lens: u32, place: vec2f, size: vec3f) -> vec3f {{\n{body}}}\n"
     )
 }
 

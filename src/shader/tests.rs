@@ -123,6 +123,7 @@ fn modules(effects: &[u32], seed: usize) -> Vec<Module> {
             planes: (seed % 4) as u32 / 3 + u32::from(seed.is_multiple_of(5)),
             grids: seed % 3 == 2,
             choosing: if seed % 4 == 3 { 1 } else { 0 },
+            ..Bends::default()
         },
         fields: seed % 5 > 2,
         varies: seed % 3 < 2 && seed % 5 < 2,

@@ -2,8 +2,8 @@
 
 use std::sync::Once;
 
-use crate::studio::*;
-use glam::DVec3;
+use crate::studio::{bent::Sight, *};
+use glam::{DVec2, DVec3};
 use veduta::{
     figure::scene_file::{Options, read},
     geom::{Aabb, deform::Deformers, shape::Motion},
@@ -14,7 +14,7 @@ use veduta::{
     },
     scene::Scene,
     shader::effect,
-    view::{Camera, View},
+    view::{Camera, Projection, View},
 };
 
 const SIZE: [u32; 2] = [240, 150];
@@ -31,7 +31,7 @@ fn documented(name: &str) -> String {
 fn with_documented() {
     static ADDED: Once = Once::new();
     ADDED.call_once(|| {
-        for name in ["ripple", "torus", "tabletop"] {
+        for name in ["ripple", "torus", "tabletop", "swirl"] {
             effect::add(&format!("{name}.wgsl"), &documented(name)).unwrap_or_else(|error| panic!("{error}"));
         }
     });
@@ -177,9 +177,13 @@ fn what_is_wrong_with_a_deformation_is_told() {
 fn a_handler_in_another_place_is_told_where_it_belongs() {
     let town = Town::new();
     let ball = format!("shape = {{ kind = \"sphere\", center = {}, radius = 9.0 }}", town.point(town.at));
-    for (name, place) in
-        [("ripple", "a deformation"), ("torus", "a region test"), ("tabletop", "a transform"), ("tours", "no effect")]
-    {
+    for (name, place) in [
+        ("ripple", "a deformation"),
+        ("torus", "a region test"),
+        ("tabletop", "a transform"),
+        ("swirl", "a ray"),
+        ("tours", "no effect"),
+    ] {
         let error = town.scene(&format!("[[lens]]\n{ball}\neffects = [\"{name}\"]\n")).expect_err("it is no effect");
         assert!(error.contains(place), "{error}");
     }
@@ -401,4 +405,143 @@ fn two_contents_of_one_city_stand_where_each_says() {
         shown > 250 && differ == 0,
         "{differ} of {shown} pixels of the moved one are others beside the one that stands"
     );
+}
+
+/// A scene with a lens of a ray handler.
+fn bent_by(town: &Town, ray: &str) -> Scene {
+    town.scene(&format!("[[lens]]\nname = \"eddy\"\nbody = \"none\"\nkind = \"ray\"\nray = {{ {ray} }}\n")).unwrap()
+}
+
+/// Pixels whose objects differ.
+fn differing(a: &Picture, b: &Picture) -> usize {
+    let [a, b] = [a, b].map(|picture| picture.object_id.as_ref().unwrap());
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
+}
+
+#[test]
+fn a_ray_of_the_docs_shows_what_it_says_on_both_back_ends() {
+    let mut town = Town::new();
+    let parallel = Camera { projection: Projection::Orthographic { height_m: 170.0 }, ..town.camera };
+    for camera in [town.camera, parallel] {
+        let scene = |ray: &str| Scene { camera: Some(camera), ..bent_by(&town, ray) };
+        let rays = scene("center = [0.45, 0.55], radius = 0.4, bend = { kind = \"swirl\", turns = 0.6 }");
+        let image = scene(
+            "center = [0.45, 0.55], radius = 0.4, method = \"image\", fineness = 2, bend = { kind = \"swirl\", turns = 0.6 }",
+        );
+        let plain = Scene { camera: Some(camera), ..town.scene("").unwrap() };
+        let view = View::new(camera, SIZE, &town.studio.extent()).unwrap();
+        let sight = Sight::new(&town.studio, camera, SIZE);
+        let [shown, looked_up, plain] = [rays, image, plain].map(|scene| town.picture(&scene));
+        let half = view.half_extent();
+        let (center, radius) = (DVec2::new(-0.1, -0.1) * half, 0.8 * half.y);
+        let ids = shown.object_id.as_ref().unwrap();
+        let (mut inside, mut wrong) = (0, 0);
+        for (i, id) in ids.iter().enumerate() {
+            // The handler's own words, in f64.
+            let met = |pixel: DVec2| {
+                let place = (sight.place(pixel) - center) / radius;
+                let rest = (1.0 - place.length_squared()).max(0.0);
+                let turned = DVec2::from_angle(std::f64::consts::TAU * 0.6 * rest * rest).rotate(place);
+                sight.id(&sight.straight(center + radius * turned))
+            };
+            let pixel = sight.pixel(i);
+            let from_rim = (sight.place(pixel) - center).length() / radius;
+            if from_rim > 0.99 {
+                continue;
+            }
+            inside += 1;
+            // Sine and cosine of GPUs are right to 2^-11: a fifth of a pixel at most here.
+            let around = (0..8).map(|k| 0.2 * DVec2::from_angle(f64::from(k) * std::f64::consts::FRAC_PI_4));
+            wrong += usize::from(met(pixel) != *id && !around.map(|by| met(pixel + by)).any(|own| own == *id));
+        }
+        assert!(inside > 8_000 && wrong == 0, "{wrong} of {inside}");
+        assert!(differing(&shown, &plain) > inside / 4, "{}", differing(&shown, &plain));
+        // An image shows what the eye sees: with no way through a plane it is all there, but for texels of edges.
+        assert!(differing(&shown, &looked_up) < inside / 50, "{}", differing(&shown, &looked_up));
+        // Beside the lens nothing changes.
+        let outside = |i: &usize| (sight.place(sight.pixel(*i)) - center).length() / radius > 1.01;
+        assert!((0..ids.len()).filter(outside).all(|i| shown.rgba[i] == plain.rgba[i]), "beside the lens");
+    }
+}
+
+#[test]
+fn a_fisheye_in_ones_own_words_is_the_fisheye() {
+    static ADDED: Once = Once::new();
+    let page = include_str!("../../docs/effects.md");
+    let body = page
+        .split("```wgsl\n    let turn = p.angle")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next())
+        .expect("the page has it");
+    let text = format!(
+        "//! name = \"globe\"\n//! kind = \"ray\"\n//! spec = \"\"\n//! doc = \"\"\n//!\n//! [[parameter]]\n//! name = \"angle\"\n//! type = \"number\"\n\
+         //! default = 1.0\n//! doc = \"\"\n\nfn effect(place: vec2f, size: vec3f, p: Parameters) -> vec3f {{\n    let turn = p.angle{body}}}\n"
+    );
+    ADDED.call_once(|| effect::add("globe.wgsl", &text).unwrap_or_else(|error| panic!("{error}")));
+    let mut town = Town::new();
+    let middle = town.at + DVec3::new(3.0, -20.0, 5.0);
+    town.camera = Camera::looking(middle, middle + DVec3::new(-10.0, 40.0, 4.0), 0.9);
+    let mut drawn = Vec::new();
+    for method in ["rays", "image"] {
+        let own = format!("radius = 0.45, method = \"{method}\", bend = {{ kind = \"globe\", angle = 2.4 }}");
+        let fisheye = format!("radius = 0.45, method = \"{method}\", angle_deg = {}", 4.8_f64.to_degrees());
+        let fisheye =
+            format!("[[lens]]\nname = \"eddy\"\nbody = \"none\"\nkind = \"fisheye\"\nray = {{ {fisheye} }}\n");
+        let scenes = [bent_by(&town, &own), town.scene(&fisheye).unwrap()];
+        drawn.extend(scenes.map(|scene| town.picture(&scene)));
+    }
+    let [own, fisheye, own_image, fisheye_image] = &drawn[..] else { panic!("four of them") };
+    // Its sines are those of the adapter, those of the fisheye are not.
+    assert!(differing(own, fisheye) < 60, "{} pixels", differing(own, fisheye));
+    // Images are wrong beside edges, and its own are as fine.
+    let off = [(own, own_image), (fisheye, fisheye_image)].map(|(rays, image)| differing(rays, image));
+    assert!(off[0] < 300 && off[0] <= off[1], "{off:?} pixels");
+    let shown = own.object_id.as_ref().unwrap().iter().filter(|id| **id > 0).count();
+    assert!(shown > 3000, "{shown}");
+}
+
+#[test]
+fn a_lens_of_a_ray_handler_goes_with_others() {
+    let mut town = Town::new();
+    let eddy = "[[lens]]\nname = \"eddy\"\nkind = \"ray\"\nray = { radius = 0.4, grid = true, bend = { kind = \"swirl\", turns = 0.4 } }\n";
+    let plain = town.scene(eddy).unwrap();
+    let plain = town.picture(&plain).rgba;
+    let ball = format!("shape = {{ kind = \"sphere\", center = {}, radius = 60.0 }}", town.point(town.at));
+    for rest in [
+        format!("[[lens]]\nname = \"a\"\n{ball}\neffects = [\"edges\"]\n"),
+        format!("[[lens]]\nname = \"a\"\n{ball}\neffects = [\"eraser\"]\n"),
+        format!("[[lens]]\nname = \"a\"\n{ball}\neffects = [\"transparent\"]\n"),
+        "[[lens]]\nname = \"glass\"\nkind = \"magnifier\"\nray = { radius = 0.3 }\n".to_owned(),
+        "[[lens]]\nname = \"other\"\nkind = \"sampling\"\nray = { radius = 0.3 }\n".to_owned(),
+        "[[lens]]\nname = \"other\"\nkind = \"ray\"\nray = { radius = 0.2, bend = { kind = \"swirl\", turns = -0.4 } }\n".to_owned(),
+    ] {
+        let scene = town.scene(&format!("{eddy}{rest}")).unwrap();
+        assert!(town.picture(&scene).rgba != plain, "{rest}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_ray_handler_is_told() {
+    let town = Town::new();
+    let of =
+        |ray: &str| town.scene(&format!("[[lens]]\nname = \"eddy\"\nkind = \"ray\"\n{ray}\n")).map(|_| ()).unwrap_err();
+    for (ray, expected) in [
+        ("", "ray.bend: is missing: a ray handler of your own"),
+        ("ray = { radius = 0.2 }", "ray.bend: is missing: a ray handler of your own"),
+        ("ray = { bend = { kind = \"swirk\" } }", "there is no handler \"swirk\"; did you mean \"swirl\"?"),
+        ("ray = { bend = { kind = \"torus\" } }", "there is no handler \"torus\""),
+        ("ray = { bend = { kind = \"swirl\", turns = 9 } }", "turns"),
+        (
+            "ray = { bend = { kind = \"swirl\" }, method = \"vertices\" }",
+            "ray.method: does not go with a handler of your own",
+        ),
+        ("ray = { bend = { kind = \"swirl\" }, magnification = 2 }", "ray.magnification: has a meaning only"),
+    ] {
+        let message = of(ray);
+        assert!(message.contains(expected), "{ray}\n  gave     {message}\n  expected {expected}");
+    }
+    // As it is written, so it is read.
+    let scene = bent_by(&town, "radius = 0.3, bend = { kind = \"swirl\", turns = 0.75 }");
+    let text = veduta::figure::scene_file::to_toml(&scene);
+    assert!(text.contains("kind = \"swirl\"") && text.contains("turns = 0.75"), "{text}");
 }

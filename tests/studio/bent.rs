@@ -61,6 +61,7 @@ impl Bent {
             Bend::Sample(Sampling { rate }) => What::Sampling(rate.clone()),
             Bend::Fisheye(Fisheye { angle, projection }) => What::Fisheye(*angle, *projection),
             Bend::Feature(_) => panic!("it has no rim"),
+            Bend::Own(used) => panic!("{used:?} is one's own"),
         };
         Self { center, radius: lens.radius * 2.0 * half.y, is_square: lens.outline == RayOutline::Square, what }
     }

@@ -48,7 +48,7 @@ const LENS_ROWS: &[Row<Lens>] = &[
             },
             "\"color\"",
             "",
-            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses, `deformation` moves what is in it, see Deformation lenses, `time` shows another moment in it, see Time, `magnifier`, `feature`, `sampling` and `fisheye` bend the rays that come through them, see Lenses that bend rays. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
+            "What kind of lens it is: `color` restyles what is in it, `content` shows something else in it, `occlusion` draws the city objects that hide a point of interest so that it can be seen, see Occlusion lenses, `deformation` moves what is in it, see Deformation lenses, `time` shows another moment in it, see Time, `magnifier`, `feature`, `sampling` and `fisheye` bend the rays that come through them, and so does `ray`, by a handler of your own, see Lenses that bend rays. The others have an overlay in place of a shape, see Best-view lenses: `annotation` an image or a text, `best-view` the city from an eye of its own, `map-view` a map, `worldlet` a small model, `see-through` and `portal` another place.",
             "\"color\"",
         ),
         |lens, _| Some(lens.kind.word().into()),

@@ -7,6 +7,7 @@ use crate::{
         check::{Fields, Place},
         choice::{self, CHOICE},
         forms::{Degrees, Form, Same, Word},
+        handled,
         keys::{FAR_M, Kind, Table, key},
         node::Data,
         paths::Options,
@@ -17,6 +18,7 @@ use crate::{
         LensKind,
         ray::{Bend, Feature, Fisheye, FisheyeProjection, MOST_POINTS, RayLens, RayMethod, Sampling, SamplingRate},
     },
+    shader::effect::AskedBy,
 };
 
 /// `ray` of a lens.
@@ -207,6 +209,28 @@ const RAY_ROWS: &[Row<RayLens>] = &[
         Word,
         Bend::Fisheye(fisheye) => fisheye.projection
     ),
+    Row::<RayLens>::new(
+        key(
+            "bend",
+            Kind::Handler,
+            "must be given for a lens of kind = \"ray\"",
+            "",
+            "Of a lens of kind `ray`: a ray handler of your own, which says what is seen at each place of the lens, and its parameters; see Effects of your own (effects.md).",
+            "{ kind = \"swirl\" }",
+        ),
+        |lens, _| match &lens.bend {
+            Bend::Own(used) => Some(handled::written(used)),
+            _ => None,
+        },
+        |lens, given| {
+            if let Bend::Own(used) = &mut lens.bend {
+                let place = given.fields.place.within(given.key, given.node.line);
+                if let Some(found) = handled::required(given.reader, given.node, &place, AskedBy::Rays) {
+                    *used = found;
+                }
+            }
+        },
+    ),
     field!(
         key(
             "method",
@@ -298,15 +322,16 @@ fn rate_problem(points: &[DVec2]) -> Option<String> {
 }
 
 /// The keys that only some kinds have, and the words of these.
-const OF_KINDS: [(&str, &[&str]); 12] = [
+const OF_KINDS: [(&str, &[&str]); 13] = [
+    ("bend", &["ray"]),
     ("mask", &["magnifier"]),
     ("magnification", &["magnifier", "feature", "sampling"]),
     ("distance", &["magnifier", "feature"]),
     ("at", &["magnifier", "feature"]),
     ("of", &["feature"]),
-    ("only", &["magnifier", "sampling", "fisheye"]),
-    ("center", &["magnifier", "sampling", "fisheye"]),
-    ("outline", &["magnifier", "sampling", "fisheye"]),
+    ("only", &["magnifier", "sampling", "fisheye", "ray"]),
+    ("center", &["magnifier", "sampling", "fisheye", "ray"]),
+    ("outline", &["magnifier", "sampling", "fisheye", "ray"]),
     ("border", &["magnifier"]),
     ("rate", &["sampling"]),
     ("angle_deg", &["fisheye"]),
@@ -320,8 +345,7 @@ const NOT_GIVEN: [&str; 6] = ["shape", "shapes", "placement", "attached_to", "ab
 pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<RayLens> {
     let Some(ray) = kind.ray() else {
         if fields.given("ray") {
-            let message =
-                "has a meaning only for a lens of kind = \"magnifier\", \"feature\", \"sampling\" or \"fisheye\"";
+            let message = "has a meaning only for a lens of kind = \"magnifier\", \"feature\", \"sampling\", \"fisheye\" or \"ray\"";
             reader.checker.note(&fields.place, "ray", fields.line("ray"), message);
         }
         return None;
@@ -331,20 +355,30 @@ pub fn read(reader: &mut Reader, fields: &Fields, kind: &LensKind) -> Option<Ray
         reader.checker.note(&fields.place, key, fields.line(key), message);
     }
     let mut ray = ray.clone();
-    let must = |reader: &mut Reader, place: &Place, line| {
-        if matches!(kind, LensKind::Feature(_)) {
-            let message = "is missing: what the lens magnifies. For example of = { ids = [\"ID\"] }";
-            reader.checker.note(place, "of", line, message);
+    let needed = match kind {
+        LensKind::Feature(_) => {
+            Some(("of", "is missing: what the lens magnifies. For example of = { ids = [\"ID\"] }"))
+        }
+        LensKind::Ray(_) => {
+            Some(("bend", "is missing: a ray handler of your own. For example bend = { kind = \"NAME\" }"))
+        }
+        _ => None,
+    };
+    let must = |reader: &mut Reader, place: &Place, line, given: &dyn Fn(&str) -> bool| {
+        if let Some((key, message)) = needed.filter(|(key, _)| !given(key)) {
+            reader.checker.note(place, key, line, message);
         }
     };
     let Some(node) = fields.node("ray") else {
-        must(reader, &fields.place.within("ray", fields.place.line), fields.place.line);
+        must(reader, &fields.place.within("ray", fields.place.line), fields.place.line, &|_| false);
         return Some(ray);
     };
     let own = reader.checker.fields(node, &RAY, &[], fields.place.within("ray", node.line));
     row::read(RAY_ROWS, &own, reader, &mut ray);
-    if !own.given("of") {
-        must(reader, &own.place, node.line);
+    must(reader, &own.place, node.line, &|key| own.given(key));
+    if matches!(kind, LensKind::Ray(_)) && ray.method == RayMethod::Vertices {
+        let message = "does not go with a handler of your own: where it shows corners, it does not say";
+        reader.checker.note(&own.place, "method", own.line("method"), message);
     }
     for (key, kinds) in OF_KINDS.into_iter().filter(|(key, kinds)| own.given(key) && !kinds.contains(&kind.word())) {
         let all = kinds.iter().map(|kind| format!("\"{kind}\"")).collect::<Vec<_>>().join(" or ");

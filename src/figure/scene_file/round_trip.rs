@@ -20,7 +20,7 @@ use crate::{
         chosen::Choice,
         color::parse_hex,
         deform::{BORDER, ControlProfile, Step},
-        kind::{Deformation, FeatureLens, FisheyeLens, Magnifier, Occlusion, SamplingLens, TimeLens},
+        kind::{Deformation, FeatureLens, FisheyeLens, Magnifier, Occlusion, OwnRayLens, SamplingLens, TimeLens},
         ray::{
             Bend, Feature, Fisheye, FisheyeProjection, Magnify, RayLens, RayMethod, RayOutline, Sampling, SamplingRate,
         },
@@ -428,6 +428,8 @@ fn ray_lenses() -> impl Strategy<Value = LensKind> {
                 Bend::Magnify(_) => Magnifier { ray }.into(),
                 Bend::Sample(_) => SamplingLens { ray }.into(),
                 Bend::Fisheye(_) => FisheyeLens { ray }.into(),
+                // Handlers of users are there where one was added.
+                Bend::Own(_) => OwnRayLens { ray }.into(),
             }
         },
     )

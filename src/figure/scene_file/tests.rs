@@ -354,7 +354,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "ray = {}",
-            "s.toml:4: [lens.0] ray: has a meaning only for a lens of kind = \"magnifier\", \"feature\", \"sampling\" or \"fisheye\"",
+            "s.toml:4: [lens.0] ray: has a meaning only for a lens of kind = \"magnifier\", \"feature\", \"sampling\", \"fisheye\" or \"ray\"",
         ),
         (
             "kind = \"magnifier\"",
@@ -400,7 +400,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "kind = \"colour\"",
-            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"magnifier\" or \"feature\" or \"sampling\" or \"fisheye\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"colour\"; did you mean \"color\"?",
+            "[lens.0] kind: must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"magnifier\" or \"feature\" or \"sampling\" or \"fisheye\" or \"ray\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"colour\"; did you mean \"color\"?",
         ),
         (
             "placement = \"camara\"",
@@ -565,7 +565,7 @@ fn every_mistake_in_a_lens_that_bends_rays_is_named() {
 fn of_a_lens_of_a_wrong_kind_only_that_is_told() {
     let rest = "poi = \"hall\"\ntest = { kind = \"spherical\", radius = 9 }\nrender = \"x-ray\"\npoi_effects = [\"gooch\"]\nmagnification = 3\nmargin = -1";
     let message = read_text(&lens_text(&format!("{rest}\nkind = \"occlusionn\""))).unwrap_err();
-    let expected = "must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"magnifier\" or \"feature\" or \"sampling\" or \"fisheye\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?";
+    let expected = "must be \"color\" or \"content\" or \"occlusion\" or \"deformation\" or \"time\" or \"magnifier\" or \"feature\" or \"sampling\" or \"fisheye\" or \"ray\" or \"annotation\" or \"best-view\" or \"map-view\" or \"worldlet\" or \"see-through\" or \"portal\", is \"occlusionn\"; did you mean \"occlusion\"?";
     assert_eq!(message, format!("s.toml:9: [lens.0] kind: {expected}"));
     // What is no table has no kind.
     for (lens, quoted) in [("3", "3"), ("[1, 2]", "[1, 2]"), ("\"color\"", "\"color\"")] {

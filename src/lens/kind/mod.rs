@@ -11,6 +11,7 @@ mod magnifier;
 mod map_view;
 mod occlusion;
 mod portal;
+mod ray;
 mod row;
 mod sampling;
 mod see_through;
@@ -28,6 +29,7 @@ pub use magnifier::Magnifier;
 pub use map_view::MapView;
 pub use occlusion::Occlusion;
 pub use portal::Portal;
+pub use ray::OwnRayLens;
 pub use row::{KindRow, OwnKind};
 pub use sampling::SamplingLens;
 pub use see_through::SeeThrough;
@@ -106,6 +108,8 @@ kinds! {
     Sampling(SamplingLens),
     /// Shows more directions than the picture.
     Fisheye(FisheyeLens),
+    /// Bends rays as a handler of its user says.
+    Ray(OwnRayLens),
     /// Shows an image or a text.
     Annotation(Annotation),
     /// Shows the city from an eye of its own.

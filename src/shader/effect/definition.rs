@@ -137,6 +137,17 @@ impl EffectDefinition {
         floats + usize::from(self.objects.is_some())
     }
 
+    /// A declaration, for its text alone, of what its parameters are read from.
+    pub fn array_of_parameters(&self) -> String {
+        let (array, slots) = (self.kind.prototype().parameters, self.slots().max(1));
+        match array.split_once('.') {
+            None => format!("var<private> {array}: array<vec4f, {slots}>;\n"),
+            Some((name, member)) => {
+                format!("struct Held_{name} {{ {member}: array<vec4f, {slots}> }}\nvar<private> {name}: Held_{name};\n")
+            }
+        }
+    }
+
     /// How many `vec4f` its parameters take.
     pub fn slots(&self) -> u32 {
         self.floats().div_ceil(4) as u32

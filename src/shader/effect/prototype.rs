@@ -11,7 +11,7 @@ pub enum EffectKind {
     Transform,
     /// Moves places of the city: a step of a deformation.
     Deform,
-    /// Says along which ray a pixel looks.
+    /// Says what is seen at a place of a lens that bends rays.
     Ray,
     /// Says how far a place is from a region: a shape of a lens.
     Region,
@@ -113,6 +113,8 @@ pub enum AskedBy {
     Shapes,
     /// `transform` of a content.
     Contents,
+    /// `bend` of a lens' `ray`.
+    Rays,
     /// The `op` of a step of `time`.
     Times,
     /// The program alone; users have none of their own.
@@ -127,6 +129,7 @@ impl AskedBy {
             Self::Steps => "a step of deform",
             Self::Shapes => "shape",
             Self::Contents => "transform of a content",
+            Self::Rays => "bend of a lens' ray",
             Self::Times => "a step of time",
             Self::Program => "nothing",
         }
@@ -139,6 +142,8 @@ const POINT: Option<(&str, &str)> = Some(("point", "Point"));
 const SIZE: Option<(&str, &str)> = Some(("size", "vec3f"));
 /// Parameters of effects.
 const PARAMETERS: &str = "parameters";
+/// Those of ray handlers, beside the knots of other lenses that bend rays.
+const RAY_NUMBERS: &str = "ray_lenses.knots";
 
 /// All prototypes, in the order of their execution.
 pub const PROTOTYPES: [Prototype; 13] = [
@@ -177,15 +182,15 @@ pub const PROTOTYPES: [Prototype; 13] = [
         word: "ray",
         name: "ray",
         stage: Stage::Pixel,
-        default_mode: Mode::Optional,
-        subject: ("pixel", "vec2f"),
-        context: None,
-        result: "Ray",
+        default_mode: Mode::Local,
+        subject: ("place", "vec2f"),
+        context: SIZE,
+        result: "vec3f",
         is_style: false,
         touches_lines: false,
-        asked_by: AskedBy::Program,
-        parameters: PARAMETERS,
-        when: "for every pixel: where it looks",
+        asked_by: AskedBy::Rays,
+        parameters: RAY_NUMBERS,
+        when: "for every pixel in the lens: what is seen at its place: `(x, y, 1)` is another place of the picture, `(x, y, z)` any direction",
     },
     Prototype {
         kind: EffectKind::Region,

@@ -20,7 +20,7 @@ use crate::shader::{
     library::MOMENT,
     module::Module,
     plan::{
-        Plan,
+        Plan, RAY_NUMBERS,
         program::Program,
         step::{Scope, Step},
     },
@@ -59,6 +59,10 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         );
         return Err(file.error(0, message));
     }
+    if effect.kind == EffectKind::Ray && effect.slots() as usize > RAY_NUMBERS {
+        let message = format!("a ray handler has at most {} numbers of parameters", 4 * RAY_NUMBERS);
+        return Err(file.error(0, message));
+    }
     let source = module_of(&effect);
     let body = body_of(&renamed.text).trim_end();
     let Some(own) = source.find(effect.source.trim_end()) else { unreachable!("a module without its only effect") };
@@ -89,7 +93,7 @@ pub fn checked(path: &str, text: &str) -> Result<EffectDefinition, FileError> {
         let at = error.spans().next().and_then(|(span, _)| span.to_range()).map(|range| range.start);
         file.error(place(at), own(at, in_words(error.as_inner())))
     })?;
-    if matches!(row.asked_by, AskedBy::Steps | AskedBy::Shapes | AskedBy::Contents | AskedBy::Times) {
+    if !matches!(row.asked_by, AskedBy::Effects | AskedBy::Program) {
         let program = HostProgram::new(&effect).map_err(|unknown| {
             let at = unknown.at.map(|range| begin + range.start.saturating_sub(effect.parameters_end));
             file.error(place(at), unknown.message)
@@ -113,7 +117,7 @@ pub(super) fn module_of(effect: &EffectDefinition) -> String {
             let deformer = PlanDeformer { control: PlanControl::Everywhere, has_band: false, steps };
             Module::Refine(DeformPlan(vec![deformer]))
         }
-        EffectKind::Region | EffectKind::Transform => return called_alone(effect),
+        EffectKind::Region | EffectKind::Transform | EffectKind::Ray => return called_alone(effect),
         EffectKind::Epoch => return chained_alone(effect),
         _ => Module::Shade(Program::Specialised(plan)),
     };
@@ -125,10 +129,10 @@ fn called_alone(effect: &EffectDefinition) -> String {
     let row = effect.kind.prototype();
     let parameters = if effect.slots() > 0 { format!(", {}(0u)", effect.own("parameters")) } else { String::new() };
     format!(
-        "var<private> {}: array<vec4f, {}>;\n\n{}\nfn call(place: vec3f, size: vec3f) -> {} {{\n    return {}(place, size{parameters});\n}}\n",
-        row.parameters,
-        effect.slots().max(1),
+        "{}\n{}\nfn call(place: {}, size: vec3f) -> {} {{\n    return {}(place, size{parameters});\n}}\n",
+        effect.array_of_parameters(),
         effect.source,
+        row.subject.1,
         row.result,
         effect.wgsl_name(),
     )

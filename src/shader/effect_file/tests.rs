@@ -41,7 +41,7 @@ fn what_is_wrong_is_named_with_its_place() {
         ),
         (
             format!("{}{good}", HEADER.replace("post", "air")),
-            "my.wgsl:1:1: mode (but of deformations), derivative, and kind = \"ray\", kind = \"air\", are for handlers of the program; expected kind = transform, deform, region, epoch, hide, opacity, material, light, \
+            "my.wgsl:1:1: mode (but of deformations), derivative, and kind = \"air\", are for handlers of the program; expected kind = transform, deform, ray, region, epoch, hide, opacity, material, light, \
              scene, post or filter",
         ),
         (HEADER.replace("spec", "spek"), "my.wgsl:3:5: unknown field `spek`"),
@@ -115,6 +115,19 @@ fn every_kind_that_users_write_is_taken() {
             "{kind}"
         );
     }
+    let ray = "fn effect(place: vec2f, size: vec3f, p: Parameters) -> vec3f { return vec3f(place, 1.0); }";
+    let vectors = |count: usize| {
+        let one = |i| {
+            format!(
+                "//!\n//! [[parameter]]\n//! name = \"v{i}\"\n//! type = \"vector\"\n//! default = [1, 2, 3]\n//! doc = \"\"\n"
+            )
+        };
+        format!("{}{}{ray}", header("ray"), (0..count).map(one).collect::<String>())
+    };
+    assert!(checked("my.wgsl", &vectors(170)).is_ok());
+    assert!(failure(&vectors(171)).contains("a ray handler has at most 512 numbers"));
+    let flat = format!("{}fn effect(place: vec2f) -> vec2f {{ return place; }}", header("ray"));
+    assert!(failure(&flat).starts_with("my.wgsl:5:4: expected `fn effect(place: vec2f, size: vec3f) -> vec3f`"));
     let kernel = "fn effect(offset: f32, p: Parameters) -> f32 { return exp(-offset * offset / p.radius); }";
     assert!(checked("my.wgsl", &format!("{}{radius}{kernel}", header("filter"))).is_ok());
     let lines = radius.replace("radius", "line_width");

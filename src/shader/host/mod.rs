@@ -27,6 +27,8 @@ pub struct HostProgram {
     main: Handle<Function>,
     /// Types of the parameters in WGSL, in order.
     parameters: Vec<&'static str>,
+    /// Whether its first argument has two coordinates, not three.
+    is_flat: bool,
 }
 
 /// What the host cannot run.
@@ -56,7 +58,7 @@ impl HostProgram {
             EffectKind::Epoch => {
                 format!("{}var<private> {array}: array<u32, {}>;\n", MOMENT.paragraph(), effect.floats().max(1))
             }
-            _ => format!("var<private> {array}: array<vec4f, {}>;\n", effect.slots().max(1)),
+            _ => effect.array_of_parameters(),
         };
         let text = head.clone() + &effect.source;
         let unknown = |at: Option<Range<usize>>, message: String| {
@@ -73,15 +75,15 @@ impl HostProgram {
         for (_, function) in module.functions.iter().filter(|(_, f)| f.name != Some(effect.own("parameters"))) {
             run::check(&module, function).map_err(|(at, message)| unknown(at.to_range(), message))?;
         }
-        Ok(Self { module, main, parameters: effect.shader_parameters().map(|(_, type_name, _)| type_name).collect() })
+        let parameters = effect.shader_parameters().map(|(_, type_name, _)| type_name).collect();
+        Ok(Self { module, main, parameters, is_flat: effect.kind.subject().1 == "vec2f" })
     }
 
     /// What its function makes of a place in a lens of this size, with these parameters, packed as the GPU has them.
     pub fn call(&self, place: DVec3, size: DVec3, parameters: &[f32]) -> Option<Value> {
-        let mut arguments = vec![
-            Value::vector([0, 1, 2].map(|i| Dual::coordinate(place[i], i))),
-            Value::vector(size.to_array().map(Dual::constant)),
-        ];
+        let along = |i: usize| Dual::coordinate(place[i], i);
+        let place = if self.is_flat { Value::vector([0, 1].map(along)) } else { Value::vector([0, 1, 2].map(along)) };
+        let mut arguments = vec![place, Value::vector(size.to_array().map(Dual::constant))];
         if !self.parameters.is_empty() {
             arguments.push(self.parameters(parameters));
         }

@@ -27,6 +27,11 @@ use crate::shader::{
     },
 };
 
+/// Lenses that bend rays, of one picture at most.
+pub const MOST_RAY_LENSES: usize = 8;
+/// How many `vec4f` of numbers shaders have of each of these at most.
+pub const RAY_NUMBERS: usize = 128;
+
 /// How many lenses bend the rays of a picture: shaders are made for so many.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Bends {
@@ -38,6 +43,8 @@ pub struct Bends {
     pub grids: bool,
     /// How many of them act on some objects alone.
     pub choosing: u32,
+    /// Numbers of the ray handlers of users that some have, ascending; 0 behind these.
+    pub own: [u16; MOST_RAY_LENSES],
 }
 
 impl Bends {

@@ -130,6 +130,9 @@ fn using(effect: &EffectDefinition) -> String {
         }
         AskedBy::Steps => lens("deformation", "box", format!("deform = [{{ kind = \"{name}\" }}]")),
         AskedBy::Shapes => lens("color", name, "effects = [\"sepia\"]".into()),
+        AskedBy::Rays => format!(
+            "[[lens]]\nname = \"l\"\nkind = \"ray\"\nray = {{ radius = 0.4, bend = {{ kind = \"{name}\" }} }}\n"
+        ),
         AskedBy::Contents => lens("content", "box", format!("content = {{ transform = {{ kind = \"{name}\" }} }}")),
         _ => lens("color", "box", format!("effects = [\"{name}\"]")),
     }
