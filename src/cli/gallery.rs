@@ -69,6 +69,7 @@ pub const SCENES: &[(&str, &str)] = scenes! {
     "rotterdam-textures"
     "sections"
     "see-inside"
+    "semantic-zoom"
     "shown-as"
     "sights"
     "sights-of-the-hague"

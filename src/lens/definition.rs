@@ -86,7 +86,7 @@ impl Lens {
     pub fn drawn_body(&self) -> LensBody {
         let is_in = |is_one: &dyn Fn(&Region) -> bool| self.shapes.iter().any(|s| s.any(is_one));
         let is_by_object = || is_in(&Region::is_by_object);
-        let is_flat = || is_in(&|f| matches!(f, Region::Shape(Shape::Flat { .. })));
+        let is_flat = || is_in(&|f| matches!(f, Region::Shape(Shape::Flat { .. }) | Region::Magnified { .. }));
         match self.body {
             LensBody::Shell if is_by_object() => LensBody::Outline,
             LensBody::Halo if self.sprite.is_some() || is_by_object() || is_flat() || self.has_sprite_file() => {

@@ -170,6 +170,12 @@ pub struct PathEvent {
     pub ends: bool,
 }
 
+/// How far shapes go that have no end, metres.
+const FAR_M: f64 = 1e6;
+
+/// Sides of a polygon in place of a circle.
+const RING_SIDES: u32 = 60;
+
 /// The view's share of where its lenses are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureFrame {
@@ -193,14 +199,38 @@ impl PictureFrame {
         if matches!(lens.bend, Bend::Feature(_)) || lens.mask.is_some() {
             return None;
         }
-        let rim = self.rim(lens);
-        let scale = if self.is_parallel { 1.0 } else { self.near };
-        let radius = rim.radius * scale;
+        Some(self.flat(&self.rim(lens), 1.0, self.near))
+    }
+
+    /// What lies between shares of a rim at two distances D.
+    fn between(&self, rim: &Rim, ends: [(f64, f64); 2]) -> Shape {
+        Shape::Convex {
+            points: ends.into_iter().flat_map(|(distance, share)| self.ring(rim, share, distance)).collect(),
+        }
+    }
+
+    /// The corners of this share of a rim at D, of a circle those of a polygon around it.
+    fn ring(&self, rim: &Rim, share: f64, distance: f64) -> Vec<DVec3> {
+        let scale = if self.is_parallel { 1.0 } else { distance };
+        let (sides, begins) = match rim.outline {
+            RayOutline::Circle => (RING_SIDES, 0.0),
+            RayOutline::Square => (4, 0.5),
+        };
+        let step = std::f64::consts::TAU / f64::from(sides);
+        let radius = share * rim.radius / (0.5 * step).cos();
+        let corner = |i: u32| rim.center + radius * DVec2::from_angle((f64::from(i) + begins) * step);
+        (0..sides).map(|i| (scale * corner(i)).extend(-distance)).collect()
+    }
+
+    /// This share of a rim as a figure at D.
+    fn flat(&self, rim: &Rim, share: f64, distance: f64) -> Shape {
+        let scale = if self.is_parallel { 1.0 } else { distance };
+        let radius = share * rim.radius * scale;
         let figure = match rim.outline {
             RayOutline::Circle => FlatFigure::Disc { radius },
             RayOutline::Square => FlatFigure::Rectangle { size: DVec2::splat(2.0 * radius) },
         };
-        Some(Shape::Flat { center: (scale * rim.center).extend(-self.near), rotation: DQuat::IDENTITY, figure })
+        Shape::Flat { center: (scale * rim.center).extend(-distance), rotation: DQuat::IDENTITY, figure }
     }
 
     /// Where the rim of a lens is.
@@ -315,6 +345,37 @@ impl RayPaths {
         Cow::Owned(own)
     }
 
+    /// The shapes, camera coordinates, whose union holds what a lens shows so many times as large as without it, or larger; none: nothing, or it has no
+    /// such outline. They are where it stands in the city, up to [`FAR_M`], so that the sun finds it there, too: of a magnifier what its rays sweep
+    /// while they are bent, and what they sweep as they go on; discs are polygons around them, by less than 1/700 of the radius too wide. Of
+    /// lenses that look around it is a figure before all that is seen.
+    pub fn magnified(&self, lens: u32, by: f64, frame: &PictureFrame) -> Vec<Shape> {
+        if let Some(image) = self.images.iter().find(|image| image.lens == lens) {
+            let share = image.magnified(by, self.is_parallel);
+            let shape = |share: f64| match (&image.bend, self.is_parallel) {
+                (ImageBend::Round(..) | ImageBend::Own(_), _) => frame.flat(&image.rim, share, frame.near),
+                (ImageBend::Sampled(_), false) => {
+                    let far = frame.ring(&image.rim, share, FAR_M);
+                    Shape::Convex { points: std::iter::once(DVec3::ZERO).chain(far).collect() }
+                }
+                (ImageBend::Sampled(_), true) => frame.between(&image.rim, [(frame.near, share), (FAR_M, share)]),
+            };
+            return share.map(shape).into_iter().collect();
+        }
+        let plane = self.planes.iter().find(|plane| plane.lens == lens);
+        let of = |plane: &PlaneLens| {
+            let share = plane.magnified(by, self.is_parallel)?;
+            let begins = plane.distance_of(by, self.is_parallel)?;
+            let at = |d: f64| (d, share * (1.0 - plane.taken(d, self.is_parallel) * (1.0 - plane.found_back(share))));
+            let mut all = vec![frame.between(&plane.rim, [plane.until, FAR_M.max(2.0 * plane.until)].map(at))];
+            if plane.until - begins > 1e-6 * plane.until {
+                all.push(frame.between(&plane.rim, [begins, plane.until].map(at)));
+            }
+            Some(all)
+        };
+        plane.and_then(of).unwrap_or_default()
+    }
+
     /// Whether the ray of a place of the picture may be bent.
     pub fn bends(&self, across: DVec2) -> bool {
         self.rims().any(|rim| rim.share(across) < 1.0)
@@ -410,8 +471,7 @@ impl RayPaths {
         if share >= 1.0 {
             return DVec2::ZERO;
         }
-        let k = if lens.border > 0.0 { ((share - (1.0 - lens.border)) / lens.border).max(0.0) } else { 0.0 };
-        -(1.0 - k) * lens.power * (at - scale * lens.rim.center)
+        -(1.0 - lens.found_back(share)) * lens.power * (at - scale * lens.rim.center)
     }
 
     /// The line of a place of a fisheye, from the eye.
@@ -471,7 +531,68 @@ pub struct Scenery<'a> {
     pub feature: &'a dyn Fn(&Choice) -> Vec<[DVec3; 3]>,
 }
 
+impl ImageLens {
+    /// The share of its radius in the picture, as that is without it, of what it shows so many times as large as without it, or larger.
+    fn magnified(&self, by: f64, is_parallel: bool) -> Option<f64> {
+        let whole = |magnifies: f64| (magnifies >= by).then_some(1.0);
+        match &self.bend {
+            ImageBend::Sampled(radius) => within(by, |r| {
+                let [a, b] = [r, r + SHARE_STEP].map(|r| radius.at(r.min(1.0)));
+                [(b - a) / SHARE_STEP, radius.at(r.max(1e-6)) / r.max(1e-6)]
+            })
+            .map(|share| radius.at(share)),
+            // In its middle; parallel rays have no angles.
+            ImageBend::Round(..) if is_parallel => whole(1.0),
+            ImageBend::Round(angle, FisheyeProjection::Angular) => whole(self.rim.radius / (0.5 * angle)),
+            ImageBend::Round(angle, FisheyeProjection::Hemispherical) => whole(self.rim.radius / (0.5 * angle).sin()),
+            ImageBend::Own(own) => whole(own.extent(&self.rim, is_parallel).magnifies),
+        }
+    }
+}
+
+/// Steps of a radius in which it is looked for where a lens magnifies.
+const SHARE_STEP: f64 = 1.0 / 4096.0;
+
+/// The share of a radius within which things are so many times as large, or larger: `shown` are what a step along the radius shows of one, and what
+/// one across it does.
+fn within(by: f64, shown: impl Fn(f64) -> [f64; 2]) -> Option<f64> {
+    let is_so = |i: &u32| {
+        let [along, across] = shown(f64::from(*i) * SHARE_STEP);
+        along.abs().max(across.abs()) * by <= 1.0 + 1e-9
+    };
+    let steps = (0..(1.0 / SHARE_STEP) as u32).take_while(is_so).count();
+    (steps > 0).then_some(steps as f64 * SHARE_STEP)
+}
+
 impl PlaneLens {
+    /// The share of its radius within which it shows things so many times as large as without it, or larger, deepest down; `None`: nowhere, or its
+    /// outline has no radius.
+    fn magnified(&self, by: f64, is_parallel: bool) -> Option<f64> {
+        let taken = self.taken(self.until, is_parallel);
+        let k = |r: f64| self.found_back(r);
+        // W5: ρ' and ρ / r.
+        let shown = |r: f64| {
+            let across = 1.0 - taken * (1.0 - k(r));
+            let grows = if k(r) > 0.0 { taken * r / self.border } else { 0.0 };
+            [across + grows, across]
+        };
+        if self.rim.field.is_some() { None } else { within(by, shown) }
+    }
+
+    /// How far the ray of this share of the radius has found back to where it would go: 0 in the core, 1 at the rim.
+    fn found_back(&self, share: f64) -> f64 {
+        if self.border > 0.0 { ((share - (1.0 - self.border)) / self.border).max(0.0) } else { 0.0 }
+    }
+
+    /// D from which on its core shows things so many times as large as without it, or larger.
+    fn distance_of(&self, by: f64, is_parallel: bool) -> Option<f64> {
+        let e = if is_parallel { 0.0 } else { self.distance.recip() };
+        let taken = 1.0 - by.recip();
+        // By how it grows with depth; of one that makes smaller it is largest at its plane.
+        let z = if taken <= 0.0 || self.power <= 0.0 { 0.0 } else { taken / (self.power - taken * e) };
+        (z >= 0.0 && self.distance + z <= self.until * (1.0 + 1e-9)).then(|| (self.distance + z).min(self.until))
+    }
+
     /// A magnifier; `None`: it changes nothing. `middle`: D of what it is about, metres.
     fn new(lens: u32, rim: &Rim, magnify: &Magnify, frame: &PictureFrame, middle: impl Fn() -> f64) -> Option<Self> {
         let middle = || middle().max(frame.near);
@@ -585,7 +706,10 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::lens::ray::{Fisheye, Sampling, SamplingRate};
+    use crate::{
+        geom::shape::{Motion, Sightlines},
+        lens::ray::{Fisheye, Sampling, SamplingRate},
+    };
 
     fn frame(is_parallel: bool) -> PictureFrame {
         PictureFrame {
@@ -738,6 +862,73 @@ mod tests {
     fn a_lens_that_magnifies_by_one_is_none() {
         assert!(paths(&[magnifier(1.0, 30.0, 20.0, 0.4)], false).is_empty());
         assert!(!paths(&[magnifier(1.1, 30.0, 20.0, 0.4)], false).is_empty());
+    }
+
+    /// Where things are larger by what a lens is asked for, told from where neighbouring rays go.
+    #[test]
+    fn what_is_magnified_is_seen_through_its_figure() {
+        for is_parallel in [false, true] {
+            for (magnification, border, by) in
+                [(3.0, 0.4, 2.0), (3.0, 0.4, 2.99), (3.0, 0.0, 1.2), (2.0, 1.0, 1.3), (0.6, 0.8, 0.5), (5.0, 0.5, 0.9)]
+            {
+                let paths = paths(&[magnifier(magnification, 60.0, 40.0, border)], is_parallel);
+                let shapes = paths.magnified(0, by, &frame(is_parallel));
+                let plane = &paths.planes[0];
+                let larger = |share: f64, d: f64| {
+                    let place = |share: f64| plane.rim.center + DVec2::X * (share * plane.rim.radius);
+                    let [a, b] = [share - 1e-6, share + 1e-6].map(|s| seen(&paths, place(s), d));
+                    let along = 2e-6 * plane.rim.radius / (b - a).x.abs();
+                    let across = share * plane.rim.radius / (seen(&paths, place(share), d) - plane.rim.center).length();
+                    along.min(across)
+                };
+                let volumes: Vec<_> = shapes
+                    .iter()
+                    .flat_map(|shape| {
+                        let sight =
+                            if is_parallel { Sightlines::Along(DVec3::NEG_Z) } else { Sightlines::From(DVec3::ZERO) };
+                        shape.placed(&Motion::NONE, &sight).unwrap()
+                    })
+                    .collect();
+                // The part that it is told from, by neighbouring rays.
+                let share = (0..4096).map(|i| f64::from(i) / 4096.0).find(|s| larger(s + 1e-4, 2.0 * plane.until) < by);
+                let share = share.unwrap_or(1.0);
+                // Places along rays, of all shares and depths: they are in the shapes where the core is so large and the share is within.
+                for (i, k) in (0..60).flat_map(|i| (0..60).map(move |k| (i, k))) {
+                    let (s, d) = (f64::from(i) / 60.0 + 0.003, plane.distance * (0.9 + 0.06 * f64::from(k)));
+                    let place = paths
+                        .line(plane.rim.center + DVec2::from_angle(f64::from(k)) * (s * plane.rim.radius), d)
+                        .at(d);
+                    let is_so = s < share && d >= plane.distance_of(by, is_parallel).unwrap();
+                    let doubtful =
+                        (s - share).abs() < 0.004 || (d - plane.distance_of(by, is_parallel).unwrap()).abs() < 0.01;
+                    let is_in = volumes.iter().any(|volume| volume.contains(place));
+                    assert!(doubtful || is_in == is_so, "{magnification} {border} {by}: {s}, {d} is in: {is_in}");
+                }
+                for part in [0.1, 0.5, 0.99] {
+                    assert!(
+                        larger(part * share, 2.0 * plane.until) >= by * 0.999,
+                        "{magnification} {border} {by} at {part}"
+                    );
+                }
+                if share < 0.999 {
+                    assert!(larger(share + 0.002, 2.0 * plane.until) < by, "{magnification} {border} {by} beyond");
+                }
+            }
+        }
+        let lens = RayLens { bend: Bend::Sample(Sampling { rate: SamplingRate::Cubic(3.0) }), ..RayLens::sampling() };
+        let paths = paths(&[lens], false);
+        let shapes = paths.magnified(0, 1.2, &frame(false));
+        let sight = Sightlines::From(DVec3::ZERO);
+        let volumes = shapes[0].placed(&Motion::NONE, &sight).unwrap();
+        let ImageBend::Sampled(sampled) = &paths.images[0].bend else { panic!("it samples") };
+        let along = |r: f64| 2e-5 / (sampled.at(r + 1e-5) - sampled.at(r - 1e-5));
+        for (i, d) in (1..100).flat_map(|i| [0.7, 30.0, 9000.0].map(|d| (i, d))) {
+            let share = f64::from(i) / 100.0;
+            let at = paths.line(paths.images[0].rim.center + DVec2::Y * (share * paths.images[0].rim.radius), d).at(d);
+            let is_in = volumes[0].contains(at);
+            assert!((along(share) - 1.2).abs() < 0.03 || is_in == (along(share) > 1.2), "{share} at {d}: {is_in}");
+        }
+        assert!(paths.magnified(0, 9.0, &frame(false)).is_empty());
     }
 
     #[test]

@@ -85,6 +85,13 @@ pub enum Region {
         /// Turns its axes into the world's.
         rotation: DQuat,
     },
+    /// All that a lens that bends rays shows larger than without it.
+    Magnified {
+        /// The name of the lens.
+        lens: String,
+        /// How many times as large, at least, > 0.
+        by: f64,
+    },
     /// The union of the volumes of city objects.
     Objects(Choice),
     /// Everything that belongs to city objects, wherever it is.
@@ -167,6 +174,17 @@ impl Region {
             Self::Occluders(occluders) | Self::Case { of: occluders, .. } => Some(occluders),
             Self::Combined { parts, .. } => parts.first().and_then(Self::occluders),
             _ => None,
+        }
+    }
+
+    /// Gives a lens another name where parts of it name it.
+    pub fn rename_lens(&mut self, before: &str, name: &str) {
+        match self {
+            Self::Magnified { lens, .. } if lens == before => name.clone_into(lens),
+            Self::Combined { parts, .. } | Self::Enclosed { parts, .. } => {
+                parts.iter_mut().for_each(|part| part.rename_lens(before, name));
+            }
+            _ => {}
         }
     }
 

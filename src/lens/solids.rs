@@ -155,6 +155,7 @@ impl Solids {
             | Region::Case { .. }
             | Region::Sprite { .. }
             | Region::Own { .. }
+            | Region::Magnified { .. }
             | Region::Combined { .. } => {
                 return Ok(Vec::new());
             }
@@ -358,6 +359,7 @@ fn made(from: &Region, city: ShownCity) -> Result<(Option<Solid>, DVec3), Region
         | Region::Enclosed { .. }
         | Region::Sprite { .. }
         | Region::Own { .. }
+        | Region::Magnified { .. }
         | Region::Combined { .. } => Ok((None, DVec3::ZERO)),
     }
 }

@@ -12,7 +12,7 @@ use crate::{
     lens::{
         BorderUnit, Class, Lens, LensBody, LensSprite, OwnRegion, Region,
         chosen::members,
-        ray_path::PictureFrame,
+        ray_path::{PictureFrame, RayPaths},
         solids::{Place, RegionError, ShownCity, Solids},
     },
     render::{
@@ -59,6 +59,12 @@ pub(super) struct Tools<'a> {
     pub viewer: Viewer,
     /// Its picture.
     pub frame: PictureFrame,
+    /// From its coordinates to the model's.
+    pub camera: Motion,
+    /// The lenses that bend its rays, and the names of the scene's lenses.
+    pub rays: &'a RayPaths,
+    /// See `rays`.
+    pub names: Vec<&'a str>,
     /// How the city is shown.
     pub moved: &'a Moved,
     /// The name of the lens.
@@ -291,6 +297,15 @@ fn leaves_of(region: &Region, place: &Place, tools: &mut Tools) -> Result<Vec<Le
         Region::Own { used, center, size, rotation } => {
             let own = OwnRegion::new(used, *center, *size, *rotation, &place.motion);
             return own.map(|own| vec![Leaf::Own(own)]).map_err(|message| ("kind".to_owned(), message));
+        }
+        Region::Magnified { lens, by } => {
+            let number = tools.names.iter().position(|name| name == lens);
+            let shapes =
+                number.map(|number| tools.rays.magnified(number as u32, *by, &tools.frame)).unwrap_or_default();
+            let placed = shapes.iter().map(|shape| shape.placed(&tools.camera, &place.sight));
+            let placed: Result<Vec<Vec<Volume>>, _> = placed.collect();
+            let placed = placed.map_err(|error| (String::new(), error.to_string()))?;
+            return Ok(placed.into_iter().flatten().map(Leaf::Volume).collect());
         }
         Region::Sprite { file } => return Ok(vec![Leaf::Sprite(tools.solids.sprite(file, city, &place.motion)?)]),
         _ => return Ok(tools.solids.volumes(region, city, place)?.into_iter().map(Leaf::Volume).collect()),

@@ -56,14 +56,19 @@ impl Eye {
         [low.x, low.y, high.x, high.y, far, metres].map(|x| x as f32)
     }
 
+    /// From the camera's coordinates (x right, y up, −z forward) to the model's.
+    pub(super) fn own_motion(&self) -> Motion {
+        let Basis { right, up, forward } = self.basis;
+        let world_from_camera = DMat3::from_cols(right, up, -forward);
+        let rotation = DQuat::from_mat3(&world_from_camera).normalize();
+        Motion { rotation, translation: self.at }
+    }
+
     /// From a lens' own coordinates to the model's; `None` where what it is attached to is not there:
     /// [`crate::scene::check_against`] says so.
     pub(super) fn motion(&self, lens: &Lens, scene: &Scene, model: &CityModel) -> Option<Motion> {
         if lens.is_of_camera() {
-            let Basis { right, up, forward } = self.basis;
-            let world_from_camera = DMat3::from_cols(right, up, -forward);
-            let rotation = DQuat::from_mat3(&world_from_camera).normalize();
-            return Some(Motion { rotation, translation: self.at });
+            return Some(self.own_motion());
         }
         Some(match anchor(&lens.placement, scene, model).ok()?? {
             DVec3::ZERO => Motion::NONE,

@@ -140,7 +140,8 @@ impl Surroundings<'_> {
         let deformations = self.deformations(scene, camera, known)?;
         let eye = Eye::new(camera)?;
         let frame = PictureFrame::new(camera, size);
-        let mut found = self.placed(drawn, &eye, &frame, &deformations.moved, known)?;
+        let rays = self.rays(scene, &View::new(*camera, size, &self.reach())?, &mut known.ray_masks)?;
+        let mut found = self.placed(drawn, &eye, &frame, &rays, &deformations.moved, known)?;
         let technique = scene.style.technique;
         if let Some(problem) = technique.refuses(scene).or_else(|| regions::refused(scene, &found.volumes)) {
             return Err(ResolveError::Scene(problem.to_string()));
@@ -168,7 +169,7 @@ impl Surroundings<'_> {
         let all = all.union(fields.bounds());
         let mut view = View::new(*camera, size, &all)?;
         let solids = known.solid_table.clone();
-        let mut rays = self.rays(scene, &view, &mut known.ray_masks)?;
+        let mut rays = rays;
         let choosing = self.choose(scene, &mut rays, &mut operations, &self.models(&contents))?;
         refuse_with(scene, !rays.is_empty(), "lenses that bend rays")?;
         refuse_with(scene, !fields.is_empty(), "volumes")?;
@@ -275,7 +276,9 @@ impl Surroundings<'_> {
         known: &mut Known,
     ) -> Result<Vec<LensVolume>, ResolveError> {
         let moved = self.deformations(&drawn.scene, camera, known)?.moved;
-        Ok(self.placed(drawn, &Eye::new(camera)?, &PictureFrame::new(camera, size), &moved, known)?.volumes)
+        let view = View::new(*camera, size, &self.reach())?;
+        let rays = self.rays(&drawn.scene, &view, &mut known.ray_masks)?;
+        Ok(self.placed(drawn, &Eye::new(camera)?, &PictureFrame::new(camera, size), &rays, &moved, known)?.volumes)
     }
 
     fn placed(
@@ -283,6 +286,7 @@ impl Surroundings<'_> {
         drawn: &Drawn,
         eye: &Eye,
         frame: &PictureFrame,
+        rays: &RayPaths,
         moved: &Moved,
         known: &mut Known,
     ) -> Result<LensVolumes, ResolveError> {
@@ -297,6 +301,9 @@ impl Surroundings<'_> {
             occlusion: &mut known.occlusion,
             viewer: eye.viewer(),
             frame: *frame,
+            camera: eye.own_motion(),
+            rays,
+            names: drawn.scene.lenses.iter().map(|lens| lens.name.as_str()).collect(),
             moved,
             lens: "",
             is_enabled: true,

@@ -186,7 +186,7 @@ pub fn heights(region: &mut Region, visit: &mut dyn FnMut(DVec2, &mut f64)) -> b
             return parts.iter_mut().fold(false, |any, part| heights(part, visit) | any);
         }
         Region::Occluders(own) | Region::Case { of: own, .. } => return heights_of_test(&mut own.test, &mut each),
-        Region::Sprite { .. } | Region::Objects(_) | Region::Thematic(_) => return false,
+        Region::Sprite { .. } | Region::Magnified { .. } | Region::Objects(_) | Region::Thematic(_) => return false,
     }
     true
 }

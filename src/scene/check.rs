@@ -3,9 +3,10 @@
 use crate::{
     city::CityModel,
     lens::{
-        EffectUse, Occluders, Placement, Region, Rendering,
+        EffectUse, Lens, Occluders, Placement, Region, Rendering,
         chosen::{absent, absent_types},
         nearest::did_you_mean,
+        ray::{Bend, RayLens},
         rendering::Case,
         source::is_known,
         thematic::{attribute_names, sentinels},
@@ -92,6 +93,7 @@ pub fn check_against(scene: &Scene, model: &CityModel) -> Vec<SceneProblem> {
             check_focus(focus, &format!("lens.{i}"), &key, model, &mut problems);
         }
     }
+    check_magnified(scene, &mut problems);
     for (i, lens) in scene.lenses.iter().enumerate() {
         if let Some(occluders) = lens.occluders() {
             check_occluders(occluders, &format!("lens.{i}"), scene, model, &mut problems);
@@ -181,6 +183,32 @@ fn check_bent(scene: &Scene, model: &CityModel, problems: &mut Vec<SceneProblem>
                 key: format!("ray.{at}.{key}"),
                 message: format!("chooses nothing: {message}"),
             }));
+        }
+    }
+}
+
+/// Lenses that shapes name.
+fn check_magnified(scene: &Scene, problems: &mut Vec<SceneProblem>) {
+    for (i, lens) in scene.lenses.iter().enumerate() {
+        for (j, shape) in lens.shapes.iter().enumerate() {
+            let has_outline = |ray: &RayLens| matches!(ray.bend, Bend::Feature(_)) || ray.mask.is_some();
+            let is_wrong = |region: &Region| match region {
+                Region::Magnified { lens, .. } => {
+                    let named = scene.lenses.iter().find(|other| other.name == *lens);
+                    named.and_then(Lens::ray).is_none_or(has_outline)
+                }
+                _ => false,
+            };
+            if shape.any(&is_wrong) {
+                let key = if lens.shapes.len() == 1 { "shape".to_owned() } else { format!("shapes.{j}") };
+                problems.push(SceneProblem {
+                    table: format!("lens.{i}"),
+                    key: format!("{key}.lens"),
+                    message: "holds nothing: there is no lens of this name that bends rays in a circle or a square"
+                        .into(),
+                    is_error: false,
+                });
+            }
         }
     }
 }

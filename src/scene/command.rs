@@ -79,7 +79,7 @@ impl Command {
     }
 
     /// Gives a lens another name wherever lenses and overlays name it: in its overlay, in views that show it, in lenses that are linked to it in
-    /// time. `None` where there is none at `index`.
+    /// time, in shapes. `None` where there is none at `index`.
     pub fn rename_lens(scene: &Scene, index: usize, name: &str) -> Option<Self> {
         let before = &scene.lenses.get(index)?.name;
         Some(Self::of("rename lens", scene, |s| {
@@ -89,6 +89,8 @@ impl Command {
             named.filter(|own| *own == before).for_each(|own| name.clone_into(own));
             let steps = s.lenses.iter_mut().map(|lens| &mut lens.time).chain([&mut s.time_steps]);
             steps.for_each(|steps| links::rename(steps, before, name));
+            let shapes = s.lenses.iter_mut().flat_map(|lens| &mut lens.shapes);
+            shapes.for_each(|shape| shape.rename_lens(before, name));
         }))
     }
 

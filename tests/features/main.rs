@@ -35,6 +35,7 @@ mod layers;
 mod layouts;
 mod light;
 mod lines;
+mod magnified;
 mod many;
 mod maps;
 mod materials;

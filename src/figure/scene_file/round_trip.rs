@@ -172,6 +172,7 @@ fn plain_regions() -> impl Strategy<Value = Region> {
             size: size.into()
         }),
         1 => Just(Region::Sprite { file: "s.exr".into() }),
+        1 => ("[a-z]{1,5}", 0.1..9.0f64).prop_map(|(lens, by)| Region::Magnified { lens, by }),
         1 => choices().prop_map(Region::Objects),
         1 => choices().prop_map(Region::Thematic),
     ]

@@ -380,6 +380,28 @@ const OTHERS: &[Variant<Region>] = &[
     ),
     variant!(
         Region,
+        "magnified",
+        "All that a lens that bends rays shows so many times as large as without it, or larger, along and across: with it a lens acts where there is \
+              room for more, as one whose content is a finer level of detail. Of a magnifier its core, from where on behind its plane it is so large; \
+              of a sampling-rate lens the part around its middle; of a fisheye and of a handler of your own all of it, where it is so large \
+              anywhere. The sky is not in it. Not of feature lenses and of those with a mask. It acts in the scene's own view.",
+        Region::Magnified { lens: String::new(), by: 1.5 },
+        Region::Magnified { .. },
+        &[
+            kind!("magnified", "Which shape."),
+            part!(Region, key("lens", Kind::Text, "", "", "The name of the lens.", "\"glass\""), Same, Region::Magnified { lens, .. } => lens),
+            part!(Region, key(
+                "by",
+                Kind::Number { min: 0.01, max: 1000.0 },
+                "1.5",
+                "",
+                "How many times as large, at least.",
+                "2.0",
+            ), Same, Region::Magnified { by, .. } => by),
+        ]
+    ),
+    variant!(
+        Region,
         "objects",
         "The union of the volumes of city objects, as they are shown; open ones are closed.",
         Region::Objects(Choice::default()),
