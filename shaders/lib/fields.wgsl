@@ -22,6 +22,10 @@ struct Field {
     first_brick: u32,           // its first slice of bricks
     ramp: u32,                  // its first entry of the ramps
     reserved: u32,
+    begin_hour: i32,            // the moments from which and up to which it is there
+    begin_micro: u32,
+    end_hour: i32,
+    end_micro: u32,
 }
 
 struct FieldTable {
@@ -247,7 +251,7 @@ fn look_of_field(number: u32, pixel: vec2i, ray: Ray, distance: f32, place: vec3
                             0u, dither(pixel, view.sample_index), 0.0, 1.0);
     let classes = classes_at(sight_at(pixel, ray, point.depth, NO_OBJECT), part);
     let kept = select(kept_of_field(fragment, point, classes), 1.0, (flags & FIELD_KEPT) != 0u);
-    return vec4f(shade(&point, classes), kept);
+    return vec4f(shade(&point, classes), kept * presence_of_field(number, point, classes));
 }
 
 // Lays a layer over what lies behind it.
@@ -453,8 +457,17 @@ fn walk_fields(pixel: vec2i, ray: Ray, from_distance: f32, until: f32, part: u32
             }
             lay_surface(hit.number, way, ray, distance, pixel, part, laid);
             // On the other side of it.
+            let began = at;
             at = max(distance, at);
             before[hit.number] = vec2f(hit.values.y, at);
+            // Of the others those that the cell has, too, are still to come, and those that it has not are not, however their values round here.
+            for (var i = 0u; i < fields.count; i++) {
+                if i != hit.number && fields.each[i].mode == FIELD_SURFACE && before[i].y >= began {
+                    let value = level_of_field(i, ways[i].start + at * ways[i].along);
+                    let level = fields.each[i].level;
+                    before[i] = vec2f(select(before[i].x, value, (value < level) == (before[i].x < level)), at);
+                }
+            }
         }
     }
 }

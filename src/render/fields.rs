@@ -1,6 +1,7 @@
 //! Volumes of a scene: their fields as rays meet them, and where they stand.
 
 use std::{
+    collections::BTreeSet,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -10,8 +11,13 @@ use glam::{DMat3, DVec2, DVec3};
 use crate::{
     field::{self, Component, FieldFile, Grid, Values},
     geom::Aabb,
-    render::{eye::PictureTile, layout},
+    render::{
+        epochs::{Epochs, Met},
+        eye::PictureTile,
+        layout,
+    },
     scene::volume::{MOST_VOLUMES, RAMP_ENTRIES, Volume, VolumeLight, VolumeMode},
+    time::Moment,
     view::View,
 };
 
@@ -167,6 +173,8 @@ pub(super) struct PlacedField {
     /// The values at the ends of its ramp.
     ends: [f64; 2],
     volume: Volume,
+    /// From when up to when it is seen; `None`: whatever moment shows.
+    there: Option<[Option<Moment>; 2]>,
     /// Metres.
     thickness: f64,
     step: f64,
@@ -202,11 +210,48 @@ impl KnownFields {
     ///
     /// # Errors
     /// A file that is none, or has not what is asked for; too many.
-    pub fn of_scene(&mut self, volumes: &[Volume]) -> Result<PlacedFields, String> {
+    pub fn of_scene(&mut self, volumes: &[Volume], epochs: &Epochs) -> Result<PlacedFields, String> {
         let shown: Vec<&Volume> = volumes.iter().filter(|volume| volume.visible).collect();
         if shown.len() > MOST_VOLUMES {
             return Err(format!("{} volumes are shown; one picture takes {MOST_VOLUMES}", shown.len()));
         }
+        self.forget_others(volumes);
+        let mut all = Vec::new();
+        for volume in shown {
+            let steps = self.steps_that_show(volume, epochs)?;
+            all.extend(steps.into_iter().map(|time_step| Volume { time_step, ..volume.clone() }));
+        }
+        if all.len() > MOST_VOLUMES {
+            let message = "lenses show steps in time of volumes";
+            return Err(format!(
+                "{message}, {} with those that show outside; one picture takes {MOST_VOLUMES}",
+                all.len()
+            ));
+        }
+        all.iter().map(|volume| self.placed(volume)).collect::<Result<_, _>>().map(PlacedFields)
+    }
+
+    /// The steps in time of a volume that moments of a scene show, ascending.
+    fn steps_that_show(&mut self, volume: &Volume, epochs: &Epochs) -> Result<BTreeSet<u32>, String> {
+        if volume.begins.is_none() || volume.ends.is_none() {
+            return Ok([volume.time_step].into());
+        }
+        let words = epochs.lenses().len().div_ceil(32);
+        let (may, surely) = (vec![u32::MAX; words], vec![0; words]);
+        let moments = epochs.moments_of(Met { may: &may, surely: &surely });
+        let too_many = || format!("volume \"{}\": begins: lenses show too many moments", volume.name);
+        let steps = self.steps_of(volume)?;
+        Ok(moments.ok_or_else(too_many)?.into_iter().map(|moment| volume.step_at(moment, steps)).collect())
+    }
+
+    /// How many steps in time a volume has.
+    fn steps_of(&mut self, volume: &Volume) -> Result<usize, String> {
+        let file = self.file(&volume.file).map_err(|error| format!("volume \"{}\": {error}", volume.name))?;
+        Ok(array_of(volume, &file).map_or(1, |own| own.steps.len()))
+    }
+
+    /// Forgets what volumes had that are no more.
+    fn forget_others(&mut self, volumes: &[Volume]) {
         if !volumes.is_empty() {
             self.files.retain(|(file, _)| volumes.iter().any(|volume| volume.file == *file));
             self.data.retain(|(of, _)| volumes.iter().any(|volume| volume.file == of.file));
@@ -214,15 +259,19 @@ impl KnownFields {
             let data = &self.data;
             self.histograms.retain(|(of, ..)| data.iter().any(|(_, own)| Arc::ptr_eq(of, own)));
         }
-        shown.into_iter().map(|volume| self.placed(volume)).collect::<Result<_, _>>().map(PlacedFields)
     }
 
-    /// What the volumes of a scene show.
+    /// What the volumes of a scene show at a moment.
     ///
     /// # Errors
     /// Those of [`Self::of_scene`].
-    pub fn shown(&mut self, volumes: &[Volume]) -> Result<Vec<ShownVolume>, String> {
-        let placed = self.of_scene(volumes)?.0;
+    pub fn shown(&mut self, volumes: &[Volume], at: Option<Moment>) -> Result<Vec<ShownVolume>, String> {
+        self.forget_others(volumes);
+        let mut placed = Vec::new();
+        for volume in volumes.iter().filter(|volume| volume.visible).take(MOST_VOLUMES) {
+            let time_step = volume.step_at(at, self.steps_of(volume)?);
+            placed.push(self.placed(&Volume { time_step, ..volume.clone() })?);
+        }
         let indices = (0..volumes.len()).filter(|i| volumes[*i].visible);
         let shown = |(index, field): (usize, Arc<PlacedField>)| {
             let volume = &volumes[index];
@@ -332,7 +381,8 @@ impl KnownFields {
         let [low, high] = grid.bounds();
         let step = (volume.step * smallest).max(low.distance(high) / MOST_STEPS);
         let seen = Vec::new();
-        let field = PlacedField { data, grid, entries, seen, ends, volume: volume.clone(), thickness, step };
+        let there = volume.seen_from_to(volume.time_step as usize, steps);
+        let field = PlacedField { data, grid, entries, seen, ends, volume: volume.clone(), there, thickness, step };
         Ok(PlacedField { seen: field.seen_bricks(), ..field })
     }
 
@@ -536,6 +586,9 @@ impl PlacedField {
         ];
         let steepest =
             (0..3).map(|i| f64::from(self.data.steepest[i]) / self.grid.steps[i].length()).fold(0.0, f64::max);
+        let [begin, end] = self.there.unwrap_or([None; 2]);
+        let begin = begin.unwrap_or(Moment::FIRST).words();
+        let end = end.map_or([i32::MAX.cast_unsigned(), 0], Moment::words);
         layout::Field {
             to_x: axis(0),
             to_y: axis(1),
@@ -554,6 +607,10 @@ impl PlacedField {
             first_brick: first[1],
             ramp: first[2],
             reserved: 0,
+            begin_hour: begin[0].cast_signed(),
+            begin_micro: begin[1],
+            end_hour: end[0].cast_signed(),
+            end_micro: end[1],
         }
     }
 
@@ -589,6 +646,13 @@ impl PlacedFields {
             .iter()
             .filter_map(|field| Some(format!("volume \"{}\": {}", field.volume.name, field.unseen(city)?)))
             .collect()
+    }
+
+    /// Whether what is seen of them goes by the moment that shows: some are steps in time of one volume.
+    pub fn vary(&self) -> bool {
+        let name = |field: &Arc<PlacedField>| field.there.is_some().then(|| field.volume.name.clone());
+        let timed: Vec<String> = self.0.iter().filter_map(name).collect();
+        timed.windows(2).any(|pair| pair[0] == pair[1])
     }
 
     /// What there is among them.

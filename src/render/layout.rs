@@ -468,6 +468,10 @@ pub struct Field {
     pub first_brick: u32,
     pub ramp: u32,
     pub reserved: u32,
+    pub begin_hour: i32,
+    pub begin_micro: u32,
+    pub end_hour: i32,
+    pub end_micro: u32,
 }
 
 /// Fields of a picture, and the entries of their ramps.
@@ -871,7 +875,11 @@ mod tests {
                     thickness,
                     first_brick,
                     ramp,
-                    reserved
+                    reserved,
+                    begin_hour,
+                    begin_micro,
+                    end_hour,
+                    end_micro
                 }),
             ),
             (&fields, host!(FieldTable { count, is_jittered, step, reserved, each, ramps })),

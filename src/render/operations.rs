@@ -120,6 +120,8 @@ pub struct SceneTime {
     pub moves: bool,
     /// See `moves`.
     pub moving: Vec<Option<Moment>>,
+    /// Whether fields show other steps in time at other moments.
+    pub fields_vary: bool,
     /// The moments whose suns shine somewhere, the scene's own first; empty: one sun is everywhere.
     pub suns: Vec<Option<Moment>>,
 }
@@ -276,7 +278,7 @@ impl Operations {
         let has_histories = models.iter().any(|model| !model.histories.is_empty());
         let has_any = || time.lifetimes.iter().any(|lifetimes| lifetimes.has_any());
         let is_lit = !time.suns.is_empty();
-        self.varies = is_lit || (time.epochs.is_any() && has_histories);
+        self.varies = is_lit || time.fields_vary || (time.epochs.is_any() && has_histories);
         self.suns.clone_from(&time.suns);
         self.uber.lit = is_lit;
         self.timed = time.moves || self.varies || (time.epochs.is_any() && has_any());

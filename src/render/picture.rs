@@ -33,7 +33,7 @@ use crate::{
         city::Shown,
         deformed::DeformedFigures,
         diagnostics,
-        epochs::KnownLifetimes,
+        epochs::{Epochs, KnownLifetimes},
         eye::PictureTile,
         fields::ShownVolume,
         footprints::OwnFootprints,
@@ -384,7 +384,7 @@ impl Studio {
             let mut extent = self.extent();
             if extent.is_empty() {
                 // Volumes alone; whoever draws tells what is wrong with one.
-                let volumes = self.known().fields.of_scene(&scene.volumes).unwrap_or_default();
+                let volumes = self.known().fields.of_scene(&scene.volumes, &Epochs::default()).unwrap_or_default();
                 extent = volumes.bounds();
                 boxes = volumes.0.iter().map(|field| field.bounds()).collect();
             }
@@ -626,7 +626,9 @@ impl Studio {
     /// # Errors
     /// A file that is none, or has not what is asked for.
     pub fn volumes(&self, scene: &Scene) -> Result<Vec<ShownVolume>, RenderError> {
-        self.known().fields.shown(&scene.volumes).map_err(RenderError::Scene)
+        let epochs = Epochs::new(scene).map_err(RenderError::Scene)?;
+        let at = epochs.own.first().and_then(|(moment, _)| *moment);
+        self.known().fields.shown(&scene.volumes, at).map_err(RenderError::Scene)
     }
 
     /// The files that the volumes of a scene are read from, with those that they name.

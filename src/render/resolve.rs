@@ -29,7 +29,7 @@ use crate::{
         moved::Moved,
         moving::{Moving, MovingObjects},
         occlusion::Occlusion,
-        operations::{AllTests, Beside, LensTables, MOST_FILTERS, Operations, SceneTime},
+        operations::{Beside, LensTables, MOST_FILTERS, Operations, SceneTime},
         parts::whole,
         placed_region::{Leaf, Members},
         placement::Eye,
@@ -155,7 +155,11 @@ impl Surroundings<'_> {
         let sights = self.sights(scene, &eye, &deformations.moved, known);
         // What is moved may be anywhere.
         let seen = deformations.moved.is_nothing().then_some(&view);
-        let (mut operations, mut moving) = self.operations(scene, &volumes, tests, &contents, sights, seen)?;
+        let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;
+        let fields = known.fields.of_scene(&scene.volumes, &epochs).map_err(ResolveError::Scene)?;
+        let placed = LensVolumes { volumes, tests };
+        let (mut operations, mut moving) = self.operations(scene, &placed, &contents, sights, seen, fields.vary())?;
+        let mut volumes = placed.volumes;
         let mut contents = contents;
         let shown = known.contents.moving(&contents, &moving.wanted);
         moving.bounds = shown.iter().fold(moving.bounds, |all, one| all.union(one.bounds(&Aabb::EMPTY)));
@@ -164,7 +168,6 @@ impl Surroundings<'_> {
         add_members(&mut operations, &mut volumes, &self.models(&contents));
         check_counts(&operations, &volumes)?;
         let (own, moved) = (self.reach(), &deformations.moved);
-        let fields = known.fields.of_scene(&scene.volumes).map_err(ResolveError::Scene)?;
         let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved)).union(moving.bounds);
         let all = all.union(fields.bounds());
         let mut view = View::new(*camera, size, &all)?;
@@ -401,12 +404,13 @@ impl Surroundings<'_> {
     fn operations(
         &self,
         scene: &Scene,
-        volumes: &[LensVolume],
-        tests: AllTests,
+        placed: &LensVolumes,
         contents: &SceneContents,
         sights: Vec<Vec<u32>>,
         seen: Option<&View>,
+        fields_vary: bool,
     ) -> Result<(Operations, Moving), ResolveError> {
+        let volumes = &placed.volumes;
         let mut present = vec![false; scene.lenses.len()];
         for volume in volumes {
             present[volume.lens as usize] = true;
@@ -426,9 +430,10 @@ impl Surroundings<'_> {
             false => Moving { bounds: Aabb::EMPTY, ..Moving::default() },
         };
         time.moving.clone_from(&moving.moments);
+        time.fields_vary = fields_vary;
         time.suns = suns(scene, &time.epochs, &places).map_err(ResolveError::Scene)?;
         let beside = Beside { tables: &tables, time: &time, point_px: scene.figure.point_px() };
-        let made = Operations::new(&style.effects, &scene.lenses, &present, tests, &models, &beside);
+        let made = Operations::new(&style.effects, &scene.lenses, &present, placed.tests.clone(), &models, &beside);
         let mut operations = made.map_err(|error| ResolveError::Scene(error.to_string()))?;
         operations.contents.clone_from(&contents.uses);
         Ok((operations, moving))

@@ -10,6 +10,7 @@ use crate::{
         color::{Srgb, linear_from_srgb, mixed},
         ramp::{RampColors, ramp},
     },
+    time::Moment,
 };
 
 /// Volumes of a scene that are shown, at most: one picture takes so many.
@@ -34,8 +35,12 @@ pub struct Volume {
     pub unit: Option<String>,
     /// What of vectors is shown.
     pub component: Component,
-    /// Which step in time, from 0.
+    /// Which step in time, from 0, where no moment says it.
     pub time_step: u32,
+    /// When its first step in time is, and its last; the others are evenly between. With both, the moment that shows says which is seen.
+    pub begins: Option<Moment>,
+    /// See `begins`.
+    pub ends: Option<Moment>,
     /// Whether its numbers are labels of things.
     pub labels: bool,
     /// Where its first sample is, metres; `None`: where the file says.
@@ -75,6 +80,8 @@ impl Default for Volume {
             unit: None,
             component: Component::Magnitude,
             time_step: 0,
+            begins: None,
+            ends: None,
             labels: false,
             origin: None,
             spacing: None,
@@ -89,6 +96,36 @@ impl Default for Volume {
             thickness: None,
             step: 1.0,
         }
+    }
+}
+
+impl Volume {
+    /// When a step of so many begins to be seen: steps are seen up to the next one, the first before it, too, the last after it. `None`: moments say
+    /// nothing of it.
+    pub fn step_begins(&self, step: usize, steps: usize) -> Option<Moment> {
+        let (first, last) = (self.begins?.micros(), self.ends?.micros());
+        let between = steps.max(2) as i64 - 1;
+        // In 128 bits, as the calendar times the steps of a file would not fit in 64.
+        let after = i128::from(last - first) * step as i128 / i128::from(between);
+        Moment::from_micros(first + after as i64)
+    }
+
+    /// The step of so many that is seen at a moment; where there is none the first.
+    pub fn step_at(&self, moment: Option<Moment>, steps: usize) -> u32 {
+        if self.begins.and(self.ends).is_none() {
+            return self.time_step;
+        }
+        let Some(moment) = moment else { return 0 };
+        let is_there = |step: &usize| self.step_begins(*step, steps).is_some_and(|begins| begins <= moment);
+        (0..steps).take_while(is_there).count().saturating_sub(1) as u32
+    }
+
+    /// From when up to when a step of so many is seen; without a bound for ever.
+    pub fn seen_from_to(&self, step: usize, steps: usize) -> Option<[Option<Moment>; 2]> {
+        self.begins.and(self.ends)?;
+        let begins = (step > 0).then(|| self.step_begins(step, steps)).flatten();
+        let ends = (step + 1 < steps).then(|| self.step_begins(step + 1, steps)).flatten();
+        Some([begins, ends])
     }
 }
 

@@ -17,7 +17,7 @@ use crate::shader::{
     plan::{lens::BodyKind, program::Program, uber::Uber},
     shading::Shading,
     table::{self, MOST_SLOTS},
-    writer::{KEPT_END, kept_head, opacity_end},
+    writer::{KEPT_END, kept_head, opacity_end, presence_of_field},
 };
 
 /// `shade`, `styled`, `outlines`, `write_classes` and what they call, for `pass/shade.wgsl`.
@@ -101,7 +101,8 @@ pub(super) fn opacity(uber: &Uber, handlers: &[EffectDefinition]) -> String {
 pub(super) fn kept(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let has = |kind| used(uber, handlers).any(|(_, h)| h.kind == kind);
     let hides = has(EffectKind::Hide);
-    let head = kept_head(hides || has(EffectKind::Opacity));
+    let is_cut = hides || has(EffectKind::Opacity) || uber.varies;
+    let head = presence_of_field(uber.varies, uber.partly) + &kept_head(is_cut);
     if !hides {
         return head + KEPT_END;
     }

@@ -16,6 +16,7 @@ use crate::shader::{
         step::{Scope, Step},
     },
 };
+use crate::time::Moment;
 
 /// A plan while it is written out.
 pub(super) struct Writer<'a> {
@@ -250,7 +251,8 @@ impl Writer<'_> {
 
     /// How much lenses leave of a field at a place: what hides takes it away, and opacity rules thin it out as they do surfaces.
     pub(super) fn kept(&self) -> String {
-        let mut text = kept_head(self.has(EffectKind::Hide) || self.has(EffectKind::Opacity));
+        let is_cut = self.has(EffectKind::Hide) || self.has(EffectKind::Opacity) || self.plan.varies;
+        let mut text = presence_of_field(self.plan.varies, self.plan.partly) + &kept_head(is_cut);
         for (step, handler) in self.plan.steps_of(EffectKind::Hide, self.handlers) {
             let own = match handler.slots() {
                 0 => String::new(),
@@ -287,6 +289,38 @@ impl Writer<'_> {
 
 /// The material that acts on fields; others are of surfaces.
 pub(super) const OF_FIELDS: &str = "transfer";
+
+/// `presence_of_field`: how much of a field is there at the moment that shows at a place of it.
+pub(super) fn presence_of_field(varies: bool, partly: bool) -> String {
+    let head = "fn presence_of_field(number: u32, point: Point, classes: Classes) -> f32 {\n";
+    if !varies {
+        return format!("{head}    return 1.0;\n}}\n\n");
+    }
+    let own = "    let begin = Moment(fields.each[number].begin_hour, fields.each[number].begin_micro);
+    let end = Moment(fields.each[number].end_hour, fields.each[number].end_micro);
+    let lifetime = Lifetime(begin, end);
+";
+    // Where no moment is, the first of several is there.
+    let there = "select(0.0, 1.0, holds(lifetime, in_time(moment_of_layer_at(point, classes))))";
+    let first = Moment::FIRST.words();
+    let [hour, micro] = [first[0].cast_signed().to_string(), first[1].to_string()];
+    let in_time = format!(
+        "fn in_time(at: Moment) -> Moment {{\n    if at.hour == TIMELESS_HOUR {{\n        return Moment({hour}, {micro}u);\n    }}\n    return at;\n}}\n\n"
+    );
+    let head = in_time + head;
+    match partly {
+        false => format!("{head}{own}    return {there};\n}}\n\n"),
+        true => format!(
+            "{head}{own}    var sum = 0.0;
+    let count = combinations();
+    for (var i = 0u; i < count; i++) {{
+        combination = i;
+        sum += {there} * weight_of_combination();
+    }}
+    return sum;\n}}\n\n"
+        ),
+    }
+}
 
 /// The beginning of `kept_of_field`. `is_cut`: whether anything may take some of a field away.
 pub(super) fn kept_head(is_cut: bool) -> String {

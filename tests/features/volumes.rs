@@ -1,6 +1,11 @@
 //! Volumes as people have them: what is wrong with one is told, what is right is in legends and statistics of files.
 
-use std::{fs, path::Path, process::Command};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+    sync::Once,
+};
 
 use veduta::{
     figure::{
@@ -197,4 +202,117 @@ fn what_a_volume_is_read_from_is_kept() {
     assert_eq!(program.status.code(), Some(2), "{said}");
     assert!(said.contains("data.png is read, and would be replaced"), "{said}");
     assert_eq!(fs::read(folder.join("data.png")).expect("it is there"), data);
+}
+
+/// A file of four steps in time, each of a value of its own.
+fn series() -> PathBuf {
+    let steps = 4;
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("series-{steps}-{}.nrrd", std::process::id()));
+    let head = format!(
+        "NRRD0005\ntype: float\ndimension: 4\nsizes: 3 3 3 {steps}\nkinds: domain domain domain time\nspacings: 1 1 1 1\nendian: little\nencoding: raw\n\n"
+    );
+    let value = |step: usize| step as f32 / (steps - 1) as f32;
+    let values = (0..steps).flat_map(|step| [value(step); 27]).flat_map(f32::to_le_bytes);
+    // Written once: others may read it meanwhile.
+    static WRITTEN: Once = Once::new();
+    WRITTEN.call_once(|| {
+        fs::write(&path, head.into_bytes().into_iter().chain(values).collect::<Vec<u8>>()).expect("a file")
+    });
+    path
+}
+
+/// A block whose colour is its step's, of four days.
+fn changing(rest: &str) -> String {
+    let [own, plain] = [series(), written("block", [3, 3, 3], |_| 0.5)].map(|file| format!("{file:?}"));
+    let colors = "colors = [\"#d02020\", \"#20d020\", \"#2020d0\", \"#d0d020\"], opacity = [0.6, 0.6, 0.6, 0.6]";
+    let of_one = "colors = [\"#3060c0\", \"#3060c0\"], opacity = [1.0, 1.0]";
+    block("").replace(&plain, &own).replace(of_one, colors) + rest
+}
+
+const DAYS: &str = "begins = \"2024-06-01\"\nends = \"2024-06-04\"\n";
+
+#[test]
+fn steps_in_time_follow_the_moment() {
+    let mut studio = of_scene(&scene("").expect("a city"));
+    let mut drawn = |rest: &str| {
+        let scene = scene(&changing(rest)).unwrap_or_else(|error| panic!("{error}"));
+        let [one, other] = [Backend::Specialised, Backend::Uber].map(|backend| {
+            let request =
+                Request { backend, aovs: Aovs { depth: true, ..Aovs::default() }, ..Request::plain([96, 54]) };
+            studio.render(&scene, &request).unwrap_or_else(|error| panic!("{error}")).rgba
+        });
+        assert!(one == other, "the back ends differ: {rest}");
+        one
+    };
+    let steps: Vec<_> = (0..4).map(|step| drawn(&format!("time_step = {step}\n"))).collect();
+    assert!(steps.windows(2).all(|pair| pair[0] != pair[1]), "each has its own colour");
+    // Each step up to the next one, the first before, the last after, the first where no moment is.
+    for (at, step) in [
+        ("2024-05-01", 0),
+        ("2024-06-01", 0),
+        ("2024-06-01T23:59", 0),
+        ("2024-06-02", 1),
+        ("2024-06-03T12:00", 2),
+        ("2024-07-01", 3),
+    ] {
+        assert!(drawn(&format!("{DAYS}[time]\nat = \"{at}\"\n")) == steps[step], "{at}");
+    }
+    assert!(drawn(DAYS) == steps[0], "no moment");
+    // A time lens around all of it shows its own moment, one around nothing none; each half of it what its lens says.
+    let lens = |name: &str, x: f64, at: &str| {
+        format!(
+            "[[lens]]\nname = \"{name}\"\nkind = \"time\"\nbody = \"none\"\nshape = {{ kind = \"box\", center = [{x}, 0, 15], size = [60, 80, 60] }}\ntime = [{{ op = \"set\", at = \"{at}\" }}]\n"
+        )
+    };
+    let time = "[time]\nat = \"2024-06-01\"\n";
+    assert!(drawn(&format!("{DAYS}{time}{}", lens("a", 0.0, "2024-06-03"))) == steps[2], "all of it");
+    assert!(drawn(&format!("{DAYS}{}", lens("a", 0.0, "2024-06-03"))) == steps[2], "all of it, and no moment outside");
+    assert!(drawn(&format!("{DAYS}{time}{}", lens("a", 500.0, "2024-06-03"))) == steps[0], "none of it");
+    let halves = drawn(&format!("{DAYS}{time}{}{}", lens("a", -30.0, "2024-06-03"), lens("b", 30.0, "2024-06-04")));
+    let is_of = |i: usize, step: usize| halves[i] == steps[step][i];
+    let changed: Vec<usize> = (0..halves.len()).filter(|i| steps[2][*i] != steps[3][*i]).collect();
+    let (left, right) =
+        (changed.iter().filter(|i| is_of(**i, 2)).count(), changed.iter().filter(|i| is_of(**i, 3)).count());
+    assert!(left > changed.len() / 3 && right > changed.len() / 3, "{left} and {right} of {}", changed.len());
+    // Several moments together: half of each.
+    let both = drawn(&format!(
+        "{DAYS}[time]\nat = \"2024-06-01\"\nsteps = [{{ op = \"aggregate\", at = [\"2024-06-01\", \"2024-06-02\"] }}]\n"
+    ));
+    assert!(both != steps[0] && both != steps[1], "both");
+    // Surfaces, layers and light go by it, too.
+    for mode in ["isosurface\"\nlevel = 0.5\nlight = \"lit", "maximum", "slice", "x-ray"] {
+        let of = |rest: &str| changing(rest).replace("transfer =", &format!("mode = \"{mode}\"\ntransfer ="));
+        let mut drawn = |rest: &str| {
+            let scene = scene(&of(rest)).unwrap_or_else(|error| panic!("{error}"));
+            studio.render(&scene, &Request::plain([48, 27])).unwrap_or_else(|error| panic!("{error}")).rgba
+        };
+        let own = drawn(&format!("{DAYS}{time}{}", lens("a", 0.0, "2024-06-03")));
+        let alone = drawn("time_step = 2\n");
+        let off: Vec<_> = own.iter().zip(&alone).filter(|(a, b)| a != b).collect();
+        assert!(off.is_empty(), "{mode}: {} pixels, {:?}", off.len(), off.first());
+    }
+}
+
+#[test]
+fn what_is_wrong_with_the_times_of_a_volume_is_told() {
+    let mut studio = of_scene(&scene("").expect("a city"));
+    let time = "[time]\nat = \"2024-06-01\"\n";
+    let lens = |day: usize| {
+        format!(
+            "[[lens]]\nname = \"l{day}\"\nkind = \"time\"\nshape = {{ kind = \"sphere\", center = [0, 0, 0], radius = 50 }}\ntime = [{{ op = \"set\", at = \"2024-06-0{day}\" }}]\n"
+        )
+    };
+    let once = changing(DAYS);
+    let many =
+        format!("{once}[[volume]]\nname = \"second\"\nfile = {:?}\n{DAYS}{time}{}{}", series(), lens(2), lens(3));
+    for (text, told) in [
+        (changing("begins = \"2024-06-01\"\n"), "ends: is missing"),
+        (changing("ends = \"2024-06-01\"\n"), "begins: is missing"),
+        (changing("begins = \"2024-06-02\"\nends = \"2024-06-01\"\n"), "ends: must be later than begins"),
+        (changing(&format!("{DAYS}time_step = 2\n")), "time_step: is given together with begins"),
+        (many, "lenses show steps in time of volumes, 6 with those that show outside; one picture takes 4"),
+    ] {
+        let message = message(&mut studio, &text);
+        assert!(message.contains(told), "{text}\n  gave     {message}\n  expected {told}");
+    }
 }

@@ -316,11 +316,35 @@ const VOLUME_ROWS: &[Row<Volume>] = &[
             Kind::Integer { min: 0, max: 1_000_000 },
             "0",
             "",
-            "Which step in time of the file, from 0.",
+            "Which step in time of the file, from 0, where `begins` and `ends` are not given.",
             "12"
         ),
         Same,
         |volume: Volume| volume.time_step
+    ),
+    field!(
+        key(
+            "begins",
+            Kind::Moment,
+            "none",
+            "",
+            "When its first step in time is; with `ends`. Then the moment of the scene, and in time lenses theirs, say which step is seen: each up to the next one, the first before and where no moment is, the last after.",
+            "\"2024-06-01 06:00\""
+        ),
+        Same,
+        |volume: Volume| volume.begins
+    ),
+    field!(
+        key(
+            "ends",
+            Kind::Moment,
+            "none",
+            "",
+            "When its last step in time is; the others are at equal times between.",
+            "\"2024-06-02 06:00\""
+        ),
+        Same,
+        |volume: Volume| volume.ends
     ),
     field!(
         key(
@@ -560,6 +584,15 @@ pub fn read(reader: &mut Reader, fields: &Fields, index: usize) -> Option<Volume
     }
     if volume.level.is_some() && volume.mode != VolumeMode::Isosurface {
         note("level", "has a meaning only with mode = \"isosurface\"".to_owned());
+    }
+    match (volume.begins, volume.ends) {
+        (None, Some(_)) => note("begins", "is missing: the times of steps are known with both".to_owned()),
+        (Some(_), None) => note("ends", "is missing: the times of steps are known with both".to_owned()),
+        (Some(begins), Some(ends)) if ends <= begins => note("ends", "must be later than begins".to_owned()),
+        (Some(_), Some(_)) if fields.given("time_step") => {
+            note("time_step", "is given together with begins: the moment says which step is seen".to_owned());
+        }
+        _ => {}
     }
     if fields.given("slice") && volume.mode != VolumeMode::Slice {
         note("slice", "has a meaning only with mode = \"slice\"".to_owned());
