@@ -280,6 +280,8 @@ fn first_on_path(at: vec2f, last: Hit) -> Hit {
     var path = path_of_place(across_of_pixel(at));
     var found = last;
     var begin = view.near;
+    // Where lines meet, either may round what is just there to the other's side: from one to the next they overlap, by two units of 2^-22.
+    var overlap = 0.0;
     let count = select(2u * RAY_PLANES, 0u, path.is_round);
     for (var i = 0u; i <= count; i++) {
         var end = FAR_AWAY;
@@ -288,9 +290,10 @@ fn first_on_path(at: vec2f, last: Hit) -> Hit {
         }
         if found.t > begin && end > begin {
             for (var number = 0u; number < ray_cities.count; number++) {
-                found = first_in_city(at, number, path.ray, vec2f(begin, end), found);
+                found = first_in_city(at, number, path.ray, vec2f(begin - overlap, end), found);
             }
             begin = end;
+            overlap = 4.7683716e-7 * end;
         }
         if i < count {
             pass_event(&path, i);

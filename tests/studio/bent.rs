@@ -32,6 +32,9 @@ pub struct Bent {
     what: What,
 }
 
+/// Steps of an integral.
+const STEPS: usize = 100_000;
+
 #[derive(Clone, Debug)]
 enum What {
     /// Equation 1: a plane at `z_l`, its focal point at `f` behind it, a border, and the depth from which on rays go as the eye sees.
@@ -41,8 +44,8 @@ enum What {
         border: f64,
         z_m: f64,
     },
-    /// Equation 3.
-    Sampling(SamplingRate),
+    /// Equation 3: the integral up to each of many equally wide places.
+    Sampling(Vec<f64>),
     Fisheye(f64, FisheyeProjection),
 }
 
@@ -58,7 +61,14 @@ impl Bent {
                 let plain = if view.is_orthographic() { 1.0 } else { 1.0 + z_m / z_l };
                 What::Magnifier { z_l, f: z_m / (1.0 - plain / m), border: border * lens.radius * 2.0 * half.y, z_m }
             }
-            Bend::Sample(Sampling { rate }) => What::Sampling(rate.clone()),
+            Bend::Sample(Sampling { rate }) => {
+                let step = 1.0 / STEPS as f64;
+                let grown = (0..STEPS).scan(0.0, |sum, i| {
+                    *sum += step / rate.at((i as f64 + 0.5) * step);
+                    Some(*sum)
+                });
+                What::Sampling(std::iter::once(0.0).chain(grown).collect())
+            }
             Bend::Fisheye(Fisheye { angle, projection }) => What::Fisheye(*angle, *projection),
             Bend::Feature(_) => panic!("it has no rim"),
             Bend::Own(used) => panic!("{used:?} is one's own"),
@@ -135,12 +145,11 @@ pub fn path(lens: &Bent, place: DVec2, is_parallel: bool) -> Vec<Piece> {
             let k = if *border > 0.0 { ((r - (lens.radius - border)) / border).clamp(0.0, 1.0) } else { 0.0 };
             Plane { center: lens.center, z_l: *z_l, f: *f, z_m: *z_m }.path(place, k, is_parallel)
         }
-        What::Sampling(rate) => {
-            // The integral by many small steps.
-            let steps = 4000;
+        What::Sampling(integrals) => {
             let integral = |to: f64| {
-                let step = to / f64::from(steps);
-                (0..steps).map(|i| step / rate.at((f64::from(i) + 0.5) * step)).sum::<f64>()
+                let at = to * STEPS as f64;
+                let low = (at as usize).min(STEPS - 1);
+                integrals[low] + (at - low as f64) * (integrals[low + 1] - integrals[low])
             };
             let share = r / lens.radius;
             let shown = if share > 0.0 { integral(share) / integral(1.0) / share } else { 0.0 };
@@ -181,6 +190,23 @@ fn meets(origin: DVec3, direction: DVec3, [a, b, c]: [DVec3; 3]) -> Option<f64> 
     let q = from.cross(ab);
     let v = direction.dot(q) / det;
     (u >= 0.0 && v >= 0.0 && u + v <= 1.0).then(|| ac.dot(q) / det)
+}
+
+/// How far a place is from a triangle.
+fn away_from(place: DVec3, corners: [DVec3; 3]) -> f64 {
+    let [a, b, c] = corners;
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let foot = place - normal * (place - a).dot(normal);
+    let is_over = [(a, b), (b, c), (c, a)].into_iter().all(|(a, b)| (b - a).cross(foot - a).dot(normal) >= 0.0);
+    if is_over && normal != DVec3::ZERO {
+        return (place - a).dot(normal).abs();
+    }
+    let from_side = |(a, b): (DVec3, DVec3)| {
+        let along = b - a;
+        let share = ((place - a).dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        place.distance(a + share * along)
+    };
+    [(a, b), (b, c), (c, a)].map(from_side).into_iter().fold(f64::INFINITY, f64::min)
 }
 
 /// Whether a line may meet a box within a range: what is lost to rounding counts as met.
@@ -274,12 +300,45 @@ pub fn cameras(studio: &Studio) -> Vec<Camera> {
     vec![slanting, level, street]
 }
 
+/// A node of a hierarchy of boxes around faces.
+struct Node {
+    around: [DVec3; 2],
+    /// Where its second child is; the first follows it. 0: it has faces.
+    second: usize,
+    faces: std::ops::Range<usize>,
+}
+
+/// Faces of a leaf.
+const LEAF: usize = 6;
+
+/// A hierarchy over faces, whose order it changes: in the middle of the longest side of the box around their middles.
+fn hierarchy(faces: &mut [Face], first: usize, nodes: &mut Vec<Node>) {
+    let corners = || faces.iter().flat_map(|face| face.corners);
+    let around = corners().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)]);
+    let own = nodes.len();
+    nodes.push(Node { around, second: 0, faces: first..first + faces.len() });
+    if faces.len() <= LEAF {
+        return;
+    }
+    let middle = |face: &Face| face.corners.iter().sum::<DVec3>() / 3.0;
+    let ends = faces.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], face| {
+        [low.min(middle(face)), high.max(middle(face))]
+    });
+    let wide = ends[1] - ends[0];
+    let axis = (0..3).max_by(|a, b| wide[*a].total_cmp(&wide[*b])).unwrap_or(0);
+    let half = faces.len() / 2;
+    faces.select_nth_unstable_by(half, |a, b| middle(a)[axis].total_cmp(&middle(b)[axis]));
+    let (left, right) = faces.split_at_mut(half);
+    hierarchy(left, first, nodes);
+    nodes[own].second = nodes.len();
+    hierarchy(right, first + half, nodes);
+}
+
 /// A city as a camera sees it, without lenses.
 pub struct Sight {
-    /// Those of an object stand together.
     pub faces: Vec<Face>,
-    /// The boxes around objects, view space, and which faces are theirs.
-    boxes: Vec<([DVec3; 2], std::ops::Range<usize>)>,
+    /// Over them.
+    nodes: Vec<Node>,
     pub half: DVec2,
     pub is_parallel: bool,
     size: [u32; 2],
@@ -293,16 +352,10 @@ impl Sight {
         let face =
             |t: studio::Triangle| Face { corners: t.corners.map(|c| to_view * (c - camera.eye)), object: t.object };
         let mut faces: Vec<Face> = studio::triangles(studio).into_iter().map(face).collect();
-        faces.sort_by_key(|face| face.object);
-        let mut boxes = Vec::new();
-        let mut begin = 0;
-        for own in faces.chunk_by(|a, b| a.object == b.object) {
-            let corners = || own.iter().flat_map(|face| face.corners);
-            let around = [corners().reduce(DVec3::min), corners().reduce(DVec3::max)];
-            boxes.push((around.map(|corner| corner.expect("three corners a face")), begin..begin + own.len()));
-            begin += own.len();
-        }
-        Self { faces, boxes, half: view.half_extent(), is_parallel: view.is_orthographic(), size, near: camera.near_m }
+        let mut nodes = Vec::new();
+        hierarchy(&mut faces, 0, &mut nodes);
+        let (half, is_parallel) = (view.half_extent(), view.is_orthographic());
+        Self { faces, nodes, half, is_parallel, size, near: camera.near_m }
     }
 
     /// The middle of a pixel.
@@ -322,20 +375,48 @@ impl Sight {
         vec![([0.0, f64::INFINITY], origin, direction)]
     }
 
-    /// What a path meets first: its object and the parameter. Objects whose boxes a piece misses are left out.
+    /// What a path meets first: its object and the parameter. Faces in boxes that a piece misses are left out.
     pub fn first(&self, pieces: &[Piece]) -> Option<(u32, f64)> {
         for (range, origin, direction) in pieces {
-            let (begin, end) = (range[0].max(self.near), range[1]);
-            let met = self.boxes.iter().filter(|(around, _)| may_meet(around, *origin, *direction, [begin, end]));
-            let found = met.flat_map(|(_, own)| &self.faces[own.clone()]).filter_map(|face| {
-                let t = meets(*origin, *direction, face.corners)?;
-                (t >= begin && t <= end).then_some((face.object, t))
-            });
-            if let Some(found) = found.min_by(|a, b| a.1.total_cmp(&b.1)) {
-                return Some(found);
+            let (begin, mut end) = (range[0].max(self.near), range[1]);
+            let mut found = None;
+            let mut todo = vec![0];
+            while let Some(number) = todo.pop() {
+                let node = &self.nodes[number];
+                if !may_meet(&node.around, *origin, *direction, [begin, end]) {
+                    continue;
+                }
+                if node.second > 0 {
+                    todo.extend([node.second, number + 1]);
+                    continue;
+                }
+                for face in &self.faces[node.faces.clone()] {
+                    let t = meets(*origin, *direction, face.corners).filter(|t| *t >= begin && *t <= end);
+                    if let Some(t) = t.filter(|t| found.is_none_or(|(_, nearest)| *t < nearest)) {
+                        found = Some((face.object, t));
+                        end = t;
+                    }
+                }
+            }
+            if found.is_some() {
+                return found;
             }
         }
         None
+    }
+
+    /// Whether a face of an object comes as near to where the path of a pixel is at a depth as paths of places beside it.
+    fn is_beside(&self, object: u32, lens: &Bent, pixel: DVec2, depth: f64) -> bool {
+        let at = |pixel: DVec2| {
+            let pieces = path(lens, self.place(pixel), self.is_parallel);
+            let piece = pieces.iter().find(|(range, ..)| depth <= range[1]).expect("they go on for ever");
+            piece.1 + depth * piece.2
+        };
+        let place = at(pixel);
+        let reach =
+            [DVec2::X, DVec2::Y].map(|by| at(pixel + BESIDE_PX * by).distance(place)).into_iter().fold(0.0, f64::max);
+        let own = self.faces.iter().filter(|face| face.object == object);
+        own.into_iter().any(|face| away_from(place, face.corners) <= reach)
     }
 
     /// What an AOV of objects says of a path.
@@ -376,22 +457,38 @@ pub fn compare(studio: &mut Studio, camera: Camera, lens: &Lens, size: [u32; 2])
             None if ids[i] == 0 => return Some((true, 0.0)),
             _ => {}
         }
-        // Slivers of faces may pass between a few places around.
-        let around = (0..32).map(|k| {
-            let (turn, ring) = (k % 8, 1 + k / 8);
-            f64::from(ring) / 4.0 * BESIDE_PX * DVec2::from_angle(f64::from(turn) * std::f64::consts::FRAC_PI_4)
-        });
-        let met: Vec<Option<(u32, f64)>> = std::iter::once(own).chain(around.map(|aside| met(pixel + aside))).collect();
-        let shown: Vec<f64> = match ids[i] {
-            // The plain ground, or nothing.
-            0 => return Some((met.iter().any(Option::is_none), 0.0)),
-            id => met.iter().flatten().filter(|(object, _)| object + 1 == id).map(|(_, t)| *t).collect(),
-        };
-        let nearest = shown.iter().copied().fold(f64::INFINITY, f64::min);
-        let farthest = shown.iter().copied().fold(0.0, f64::max);
         let depth = f64::from(depths[i]);
-        let off = (nearest / depth - 1.0).max(1.0 - farthest / depth).max(0.0);
-        Some((off <= DEPTH_OFF, off))
+        let beyond = |[nearest, farthest]: [f64; 2]| (nearest / depth - 1.0).max(1.0 - farthest / depth).max(0.0);
+        let ends = |all: &mut dyn Iterator<Item = f64>| {
+            all.fold([f64::INFINITY, 0.0], |[low, high], t| [low.min(t), high.max(t)])
+        };
+        // Slivers of faces may pass between a few places around: then there are many.
+        for rings in [2, 24] {
+            let around = (0..8 * rings * rings).map(|k| {
+                let (turn, ring) = (k % (8 * rings), 1 + k / (8 * rings));
+                let turn = (f64::from(turn) + 0.5 * f64::from(ring % 2)) / (8.0 * f64::from(rings));
+                f64::from(ring) / f64::from(rings) * BESIDE_PX * DVec2::from_angle(std::f64::consts::TAU * turn)
+            });
+            let met: Vec<Option<(u32, f64)>> =
+                std::iter::once(own).chain(around.map(|aside| met(pixel + aside))).collect();
+            let Some(shown) = ids[i].checked_sub(1) else {
+                // The plain ground, or nothing.
+                if met.iter().any(Option::is_none) {
+                    return Some((true, 0.0));
+                }
+                continue;
+            };
+            let off = beyond(ends(&mut met.iter().flatten().filter(|(object, _)| *object == shown).map(|(_, t)| *t)));
+            if off <= DEPTH_OFF {
+                return Some((true, off));
+            }
+            // An edge that it shares with another object is seen there, however narrow its faces are.
+            let off = beyond(ends(&mut met.iter().flatten().map(|(_, t)| *t)));
+            if off <= DEPTH_OFF && sight.is_beside(shown, &reference, pixel, depth) {
+                return Some((true, off));
+            }
+        }
+        Some((false, f64::INFINITY))
     };
     let found: Vec<(bool, f64)> = (0..ids.len()).into_par_iter().filter_map(of_pixel).collect();
     let wrong = found.iter().filter(|(is_right, _)| !is_right).count();
