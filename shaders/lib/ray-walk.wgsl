@@ -276,12 +276,26 @@ fn first_of_pixel(at: vec2f, last: Hit) -> Hit {
     return found;
 }
 
+// Where the ray that is followed turned last, on which line it was before, and by how much both lines overlap there: either may round what is just
+// there to the other's side.
+var<private> turned_at: f32;
+var<private> turned_from: Ray;
+var<private> turned_by: f32;
+
+// Whether what is met about where the ray turned was met on the line before already.
+fn is_met_before(hit: Hit) -> bool {
+    if abs(hit.t - turned_at) > turned_by {
+        return false;
+    }
+    return hit_of(hit.city, city_ray(hit.city, turned_from), hit.triangle).t <= turned_at;
+}
+
 fn first_on_path(at: vec2f, last: Hit) -> Hit {
     var path = path_of_place(across_of_pixel(at));
     var found = last;
     var begin = view.near;
-    // Where lines meet, either may round what is just there to the other's side: from one to the next they overlap, by two units of 2^-22.
-    var overlap = 0.0;
+    turned_at = -1.0;
+    turned_by = 0.0;
     let count = select(2u * RAY_PLANES, 0u, path.is_round);
     for (var i = 0u; i <= count; i++) {
         var end = FAR_AWAY;
@@ -290,10 +304,13 @@ fn first_on_path(at: vec2f, last: Hit) -> Hit {
         }
         if found.t > begin && end > begin {
             for (var number = 0u; number < ray_cities.count; number++) {
-                found = first_in_city(at, number, path.ray, vec2f(begin - overlap, end), found);
+                found = first_in_city(at, number, path.ray, vec2f(begin - turned_by, end), found);
             }
             begin = end;
-            overlap = 4.7683716e-7 * end;
+            turned_at = end;
+            turned_from = path.ray;
+            // Two units of 2^-22.
+            turned_by = 4.7683716e-7 * end;
         }
         if i < count {
             pass_event(&path, i);

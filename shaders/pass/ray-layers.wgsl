@@ -9,6 +9,9 @@ fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
 
 // What is met: whether it is there is asked on the line that the ray is on there.
 fn note_hit(line: Ray, at: vec2f, hit: Hit) {
+    if is_met_before(hit) {
+        return;
+    }
     let depth = depth_of_distance(hit.t);
     let code = code_of(hit);
     if !is_layer(fragment_on(line, at, depth, code)) {

@@ -240,3 +240,42 @@ fn what_a_lens_chose_is_bent_and_nothing_else() {
         assert!(one == other && one != of(&[], Backend::Specialised), "{effects:?}");
     }
 }
+
+/// What lies just in the plane of a lens, or just where rays go on again, is on the lines before that and behind it: neither may round it away.
+#[test]
+fn what_stands_where_rays_turn_is_not_missed() {
+    let mut studio = studio::boxes("turned", &[([-90, 10, 0], [180, 180, 10])], false, false);
+    let size = [240, 240];
+    let mut shown = 0;
+    for (i, height) in [70.0, 133.7, 777.7].into_iter().enumerate() {
+        let middle = DVec3::new(0.37, 100.21, 10.0);
+        let eye = middle + DVec3::new(0.0, 0.0, height);
+        let above = Camera { up: DVec3::Y, ..Camera::looking(eye, middle, 2.0 * (60.0 / height).atan()) };
+        let level = Camera { up: DVec3::Y, ..studio::orthographic(eye, middle, 120.0) };
+        for (camera, [distance, at]) in [above, level]
+            .into_iter()
+            .flat_map(|camera| [[0.5, 0.5], [0.3, 0.7], [1.0, 0.4]].map(|shares| (camera, shares.map(|s| s * height))))
+        {
+            let glass = magnifier(RayLens { radius: 0.5, ..magnify(2.5 + 0.1 * i as f64, distance, at, 0.4) });
+            let picture = draw(&mut studio, &studio::scene(camera, vec![glass]), size, Backend::Specialised);
+            // Through its top one sees its floor.
+            let depths = picture.depth.expect("depths");
+            let lost = depths.iter().filter(|d| (f64::from(**d) / height - 1.0).abs() > 1e-5).count();
+            assert_eq!(lost, 0, "{lost} pixels from {height} m, turned at {distance} m and {at} m behind");
+            shown += size[0] * size[1];
+            // A layer of what is seen through is there once.
+            let clear = studio::lens("clear", [Shape::Sphere { center: middle, radius: 1e4 }], "transparent");
+            let glass = magnifier(RayLens { radius: 0.5, ..magnify(2.5 + 0.1 * i as f64, distance, at, 0.4) });
+            let mut scene = studio::scene(camera, vec![glass, clear]);
+            scene.city.ground = false;
+            let picture = draw(&mut studio, &scene, size, Backend::Specialised);
+            let mut colors = picture.rgba.clone();
+            colors.sort_unstable();
+            let usual = colors[colors.len() / 2];
+            let is_other = |color: &&[u8; 4]| (0..3).any(|c| color[c].abs_diff(usual[c]) > 3);
+            let others = picture.rgba.iter().filter(is_other).count();
+            assert_eq!(others, 0, "{others} pixels have other layers, {usual:?}");
+        }
+    }
+    println!("{shown} pixels");
+}
