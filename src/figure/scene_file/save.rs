@@ -179,7 +179,16 @@ fn insert(table: &mut dyn TableLike, key: &str, node: &Node) -> bool {
     for other in FORMS.into_iter().filter(|forms| forms.contains(&key)).flatten().filter(|other| **other != key) {
         table.remove(other);
     }
-    let Some(value) = value(node) else { return false };
+    let Some(mut value) = value(node) else { return false };
+    // The space before a closing bracket stays there.
+    if let Some((_, Item::Value(last))) = table.iter_mut().last()
+        && let Some(space) = last.decor().suffix().and_then(|suffix| suffix.as_str()).map(str::to_owned)
+        && !space.is_empty()
+        && space.bytes().all(|b| b == b' ')
+    {
+        last.decor_mut().set_suffix("");
+        value.decor_mut().set_suffix(space);
+    }
     table.insert(key, Item::Value(value));
     true
 }
@@ -250,6 +259,9 @@ mod tests {
         ] {
             assert_eq!(after(FILE, &[assignment]), FILE.replacen(from, to, 1), "{assignment}");
         }
+        let glass = "veduta = 1\n[[lens]]\nname = \"a\"\nkind = \"magnifier\"\nray = { radius = 0.2 }\n";
+        let (from, to) = ("radius = 0.2 }", "radius = 0.2, border = 0.3 }");
+        assert_eq!(after(glass, &["lens.a.ray.border=0.3"]), glass.replacen(from, to, 1));
         let windows = FILE.replace('\n', "\r\n");
         assert_eq!(after(&windows, &["sun.azimuth_deg=91"]), windows.replace("= 90", "= 91.0"));
     }
