@@ -190,7 +190,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"shpere\" }",
-            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, flat, mesh, mask, mask3d, sprite, objects, thematic, enclosed, union, intersection, difference, is \"shpere\"; did you mean \"sphere\"?",
+            "shape.kind: must be one of sphere, ellipsoid, box, cylinder, cone, frustum, convex, polytope, corridor, flat, mesh, mask, mask3d, sprite, magnified, objects, thematic, enclosed, union, intersection, difference, is \"shpere\"; did you mean \"sphere\"?",
         ),
         ("shape = { kind = \"union\" }", "shape.shapes: is missing: The shapes, of any kind"),
         (
