@@ -1,4 +1,4 @@
-//! Lenses in which nothing of the cities lies, as far as boxes tell: what they do to what is inside is done to nothing.
+//! Lenses in which nothing of the cities lies, nor of fields, as far as boxes tell: what they do to what is inside is done to nothing.
 
 use crate::{
     geom::Aabb,
@@ -19,7 +19,9 @@ pub(super) fn empty_lenses(input: &FrameInput, facts: &CityFacts) -> Vec<u32> {
     }
     let of_city = facts.chunks.iter();
     let of_contents = facts.contents.iter().flat_map(|content| &content.chunks);
-    let chunks: Vec<&Aabb> = of_city.chain(of_contents).copied().flatten().map(|chunk| &chunk.bounds).collect();
+    let of_fields = input.fields.boxes();
+    let of_chunks = of_city.chain(of_contents).copied().flatten().map(|chunk| chunk.bounds);
+    let chunks: Vec<Aabb> = of_chunks.chain(of_fields).collect();
     if chunks.len() * input.volumes.len() > MOST_TESTS {
         return Vec::new();
     }

@@ -673,9 +673,14 @@ impl PlacedFields {
         }
     }
 
+    /// The boxes around them, metres.
+    pub fn boxes(&self) -> impl Iterator<Item = Aabb> {
+        self.0.iter().map(|field| field.bounds())
+    }
+
     /// The box around all, metres.
     pub fn bounds(&self) -> Aabb {
-        self.0.iter().fold(Aabb::EMPTY, |all, field| all.union(field.bounds()))
+        self.boxes().fold(Aabb::EMPTY, |all, own| all.union(own))
     }
 
     /// The part of a tile in which some may be seen; none where there is no pixel. `bent`: rays may go anywhere.

@@ -204,6 +204,37 @@ fn what_a_volume_is_read_from_is_kept() {
     assert_eq!(fs::read(folder.join("data.png")).expect("it is there"), data);
 }
 
+/// A lens in the air, with nothing of the city in it, acts on what a volume has there.
+#[test]
+fn lenses_in_which_nothing_of_the_city_is_act_on_volumes() {
+    let mut studio = of_scene(&scene("").expect("a city"));
+    let high = |rest: &str| {
+        let text = block(rest).replace("origin = [-20, -20, 0]", "origin = [-20, -20, 260]");
+        scene(&text.replace("eye = [0, -120, 70]", "eye = [0, -160, 320]").replace("[0, 0, 10]", "[0, 0, 270]"))
+    };
+    let mut drawn = |rest: &str| {
+        let scene = high(rest).unwrap_or_else(|error| panic!("{error}"));
+        let [one, other] = [Backend::Specialised, Backend::Uber].map(|backend| {
+            let request = Request { backend, ..Request::plain([96, 54]) };
+            studio.render(&scene, &request).unwrap_or_else(|error| panic!("{error}")).rgba
+        });
+        assert!(one == other, "the back ends differ: {rest}");
+        one
+    };
+    let plain = drawn("");
+    let lens = |rest: &str| {
+        format!(
+            "[[lens]]\nbody = \"none\"\nshape = {{ kind = \"sphere\", center = [0, 0, 275], radius = 30 }}\n{rest}\n"
+        )
+    };
+    let without = drawn("").iter().zip(&drawn("visible = false\n")).filter(|(a, b)| a != b).count();
+    let changed = |now: &[[u8; 4]]| now.iter().zip(&plain).filter(|(a, b)| a != b).count();
+    for effects in ["effects = [\"eraser\"]", "effects = [\"invert\"]", "effects = [\"transparent\"]"] {
+        let now = drawn(&lens(effects));
+        assert!(changed(&now) > without / 3, "{effects}: {} of {without} pixels", changed(&now));
+    }
+}
+
 /// A file of four steps in time, each of a value of its own.
 fn series() -> PathBuf {
     let steps = 4;
