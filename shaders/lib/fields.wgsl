@@ -21,7 +21,7 @@ struct Field {
     thickness: f32,             // over which a thing of one layer takes light away, metres
     first_brick: u32,           // its first slice of bricks
     ramp: u32,                  // its first entry of the ramps
-    reserved: u32,
+    object: u32,                // its number among objects, for lenses that mean objects
     begin_hour: i32,            // the moments from which and up to which it is there
     begin_micro: u32,
     end_hour: i32,
@@ -249,7 +249,7 @@ fn look_of_field(number: u32, pixel: vec2i, ray: Ray, distance: f32, place: vec3
     let height = f32(view.eye_whole.z) + view.eye_fraction.z + point.relative.z;
     let fragment = Fragment(pixel, point.depth, seen, height, NO_SURFACE, NO_OBJECT, PART_OTHER, point.normal, ray, view.orthographic == 1u,
                             0u, dither(pixel, view.sample_index), 0.0, 1.0);
-    let classes = classes_at(sight_at(pixel, ray, point.depth, NO_OBJECT), part);
+    let classes = classes_at(sight_at(pixel, ray, point.depth, fields.each[number].object), part);
     let kept = select(kept_of_field(fragment, point, classes), 1.0, (flags & FIELD_KEPT) != 0u);
     return vec4f(shade(&point, classes), kept * presence_of_field(number, point, classes));
 }

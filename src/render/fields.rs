@@ -19,10 +19,13 @@ use crate::{
     scene::volume::{MOST_VOLUMES, RAMP_ENTRIES, Volume, VolumeLight, VolumeMode},
     time::Moment,
     view::View,
+    visibility::Viewer,
 };
 
 /// Samples along an edge of the bricks that tell where nothing is seen (`lib/fields.wgsl`).
 pub(super) const BRICK: usize = 8;
+/// How much of the light on the way to a point of interest a field takes, at least, that hides it.
+const HIDES: f64 = 0.5;
 /// Steps along the longest way through a field, at most: software adapters end the loops of a shader after 65535 rounds in all.
 const MOST_STEPS: f64 = 8192.0;
 
@@ -203,7 +206,12 @@ pub struct FieldKinds {
 
 /// The volumes of a scene that are shown.
 #[derive(Clone, Debug, Default)]
-pub struct PlacedFields(pub(super) Vec<Arc<PlacedField>>);
+pub struct PlacedFields {
+    /// Each of them.
+    pub(super) all: Vec<Arc<PlacedField>>,
+    /// The number of the first among objects, for lenses that mean objects: behind those of all cities.
+    pub(super) first_object: u32,
+}
 
 impl KnownFields {
     /// The volumes of a scene, those that are shown.
@@ -228,7 +236,10 @@ impl KnownFields {
                 all.len()
             ));
         }
-        all.iter().map(|volume| self.placed(volume)).collect::<Result<_, _>>().map(PlacedFields)
+        all.iter()
+            .map(|volume| self.placed(volume))
+            .collect::<Result<_, _>>()
+            .map(|all| PlacedFields { all, first_object: 0 })
     }
 
     /// The steps in time of a volume that moments of a scene show, ascending.
@@ -606,12 +617,104 @@ impl PlacedField {
             thickness: self.thickness as f32,
             first_brick: first[1],
             ramp: first[2],
-            reserved: 0,
+            object: 0,
             begin_hour: begin[0].cast_signed(),
             begin_micro: begin[1],
             end_hour: end[0].cast_signed(),
             end_micro: end[1],
         }
+    }
+
+    /// How much of the light on the way from one place to another it takes, 0 to 1: by steps as rays have them, what stands alone by its surface.
+    fn hides(&self, from: DVec3, to: DVec3) -> f64 {
+        let from_index = DMat3::from_cols(self.grid.steps[0], self.grid.steps[1], self.grid.steps[2]);
+        let to_index = from_index.inverse();
+        let [start, end] = [from, to].map(|place| to_index * (place - self.grid.origin));
+        let (along, metres) = (end - start, from.distance(to));
+        let mut span = [0.0_f64, 1.0];
+        for axis in 0..3 {
+            let [low, high] = self.span(axis);
+            if along[axis] == 0.0 {
+                if start[axis] < low || start[axis] > high {
+                    return 0.0;
+                }
+                continue;
+            }
+            let ends = [low, high].map(|end| (end - start[axis]) / along[axis]);
+            span = [span[0].max(ends[0].min(ends[1])), span[1].min(ends[0].max(ends[1]))];
+        }
+        let length = (span[1] - span[0]) * metres;
+        if length.is_nan() || length <= 0.0 {
+            return 0.0;
+        }
+        let steps = (length / self.step).ceil().clamp(1.0, MOST_STEPS) as usize;
+        let value = |i: usize| {
+            let share = (i as f64 + 0.5) / steps as f64;
+            self.value(start + along * (span[0] + share * (span[1] - span[0])))
+        };
+        let extinction = |value: Option<f64>| value.map_or(0.0, |at| self.extinction(at));
+        let values = (0..steps).map(value);
+        let absorbed = match self.volume.mode {
+            VolumeMode::Direct | VolumeMode::Gradient | VolumeMode::XRay => {
+                values.map(extinction).sum::<f64>() * length / steps as f64
+            }
+            // Each crossing of its surface is a layer.
+            VolumeMode::Isosurface => {
+                let level = self.level();
+                let sides: Vec<bool> = values.map(|value| value.is_some_and(|value| value >= level)).collect();
+                let crossings = sides.windows(2).filter(|pair| pair[0] != pair[1]).count();
+                crossings as f64 * self.extinction(level) * self.thickness
+            }
+            VolumeMode::Slice => {
+                let axis = self.volume.slice.axis as usize;
+                let at = (self.level() - start[axis]) / along[axis];
+                let is_met = at >= span[0] && at <= span[1];
+                if is_met { extinction(self.value(start + along * at)) * self.thickness } else { 0.0 }
+            }
+            VolumeMode::Maximum | VolumeMode::Minimum | VolumeMode::Average => {
+                let known: Vec<f64> = values.flatten().collect();
+                let found = match self.volume.mode {
+                    VolumeMode::Maximum => known.iter().copied().reduce(f64::max),
+                    VolumeMode::Minimum => known.iter().copied().reduce(f64::min),
+                    _ => (!known.is_empty()).then(|| known.iter().sum::<f64>() / known.len() as f64),
+                };
+                extinction(found) * self.thickness
+            }
+        };
+        1.0 - (-absorbed).exp()
+    }
+
+    /// The place on its ramp at a place among its samples, between them linearly; of labels the nearest. `None`: it is not known.
+    fn value(&self, place: DVec3) -> Option<f64> {
+        let size = self.data.size;
+        let last = DVec3::from_array(size.map(|n| (n - 1) as f64));
+        let at = place.clamp(DVec3::ZERO, last);
+        let sample = |[x, y, z]: [usize; 3]| {
+            let value = self.data.values.get((z * size[1] + y) * size[0] + x);
+            value.is_finite().then(|| f64::from(value))
+        };
+        let [scale, shift] = self.on_ramp();
+        if self.volume.labels {
+            return sample(at.round().to_array().map(|c| c as usize)).map(|value| value * scale + shift);
+        }
+        let low = at.floor().min((last - 1.0).max(DVec3::ZERO));
+        let share = at - low;
+        let mut sum = 0.0;
+        for corner in 0..8_usize {
+            let is_high = [0, 1, 2].map(|axis| corner >> axis & 1 == 1);
+            let weight: f64 = (0..3).map(|i| if is_high[i] { share[i] } else { 1.0 - share[i] }).product();
+            let place = [0, 1, 2].map(|i| ((low[i] as usize) + usize::from(is_high[i])).min(size[i] - 1));
+            sum += weight * sample(place)?;
+        }
+        Some(sum * scale + shift)
+    }
+
+    /// What a metre of a value, a place on the ramp, takes of light.
+    fn extinction(&self, at: f64) -> f64 {
+        let at = at.clamp(0.0, 1.0) * (RAMP_ENTRIES - 1) as f64;
+        let low = (at as usize).min(RAMP_ENTRIES - 2);
+        let [a, b] = [self.entries[low][3], self.entries[low + 1][3]].map(f64::from);
+        a + (at - low as f64) * (b - a)
     }
 
     /// The rectangle of the picture in which it may be seen; `None`: it is behind the eye.
@@ -637,12 +740,27 @@ impl PlacedField {
 impl PlacedFields {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.all.is_empty()
+    }
+
+    /// Which of them hide some of these places from a viewer: they take half of the light on the way, or more.
+    pub fn that_hide(&self, places: &[DVec3], viewer: Viewer) -> [bool; MOST_VOLUMES] {
+        let from =
+            |place: DVec3| viewer.along.map_or(viewer.eye, |along| place - (place - viewer.eye).dot(along) * along);
+        let hides = |field: &PlacedField| places.iter().any(|place| field.hides(from(*place), *place) >= HIDES);
+        let mut found = [false; MOST_VOLUMES];
+        found.iter_mut().zip(&self.all).for_each(|(is, field)| *is = hides(field));
+        found
+    }
+
+    /// The box around some of them, metres.
+    pub fn bounds_of(&self, some: &[bool]) -> Aabb {
+        self.boxes().zip(some).filter(|(_, is)| **is).fold(Aabb::EMPTY, |all, (own, _)| all.union(own))
     }
 
     /// What is to be said of those of which nothing is seen in the city, which is in this box: nothing of their values, or they stand elsewhere.
     pub fn unseen(&self, city: &Aabb) -> Vec<String> {
-        self.0
+        self.all
             .iter()
             .filter_map(|field| Some(format!("volume \"{}\": {}", field.volume.name, field.unseen(city)?)))
             .collect()
@@ -651,13 +769,13 @@ impl PlacedFields {
     /// Whether what is seen of them goes by the moment that shows: some are steps in time of one volume.
     pub fn vary(&self) -> bool {
         let name = |field: &Arc<PlacedField>| field.there.is_some().then(|| field.volume.name.clone());
-        let timed: Vec<String> = self.0.iter().filter_map(name).collect();
+        let timed: Vec<String> = self.all.iter().filter_map(name).collect();
         timed.windows(2).any(|pair| pair[0] == pair[1])
     }
 
     /// What there is among them.
     pub fn kinds(&self) -> FieldKinds {
-        let any = |is: &dyn Fn(&Volume) -> bool| self.0.iter().any(|field| is(&field.volume));
+        let any = |is: &dyn Fn(&Volume) -> bool| self.all.iter().any(|field| is(&field.volume));
         let is_surface = |mode: VolumeMode| matches!(mode, VolumeMode::Isosurface | VolumeMode::Slice);
         let is_layer =
             |mode: VolumeMode| matches!(mode, VolumeMode::Maximum | VolumeMode::Minimum | VolumeMode::Average);
@@ -675,7 +793,7 @@ impl PlacedFields {
 
     /// The boxes around them, metres.
     pub fn boxes(&self) -> impl Iterator<Item = Aabb> {
-        self.0.iter().map(|field| field.bounds())
+        self.all.iter().map(|field| field.bounds())
     }
 
     /// The box around all, metres.
@@ -701,18 +819,19 @@ impl PlacedFields {
             };
             (!part.is_empty()).then_some(part)
         };
-        self.0.iter().filter_map(of_field).reduce(PictureTile::around)
+        self.all.iter().filter_map(of_field).reduce(PictureTile::around)
     }
 
     /// As shaders read them; `firsts` of each, and `texels` of all, as [`PlacedField::row`] has them.
     pub fn uniform(&self, view: &View, firsts: &[[u32; 2]], texels: [f64; 2], jittered: bool) -> layout::FieldTable {
         let mut made: layout::FieldTable = bytemuck::Zeroable::zeroed();
-        made.count = self.0.len().min(MOST_VOLUMES) as u32;
+        made.count = self.all.len().min(MOST_VOLUMES) as u32;
         made.is_jittered = u32::from(jittered);
-        made.step = self.0.iter().map(|field| field.step).fold(f64::INFINITY, f64::min) as f32;
-        for (i, (field, first)) in self.0.iter().zip(firsts).take(MOST_VOLUMES).enumerate() {
+        made.step = self.all.iter().map(|field| field.step).fold(f64::INFINITY, f64::min) as f32;
+        for (i, (field, first)) in self.all.iter().zip(firsts).take(MOST_VOLUMES).enumerate() {
             let ramp = i * RAMP_ENTRIES;
             made.each[i] = field.row(view, [first[0], first[1], ramp as u32], texels);
+            made.each[i].object = self.first_object + i as u32;
             made.ramps[ramp..ramp + RAMP_ENTRIES].copy_from_slice(&field.entries);
         }
         made

@@ -75,7 +75,7 @@ impl FieldsOnGpu {
         if fields.is_empty() {
             return Ok(false);
         }
-        let placed = &fields.0[..fields.0.len().min(MOST_VOLUMES)];
+        let placed = &fields.all[..fields.all.len().min(MOST_VOLUMES)];
         let has_all = |is: &dyn Fn(&Arc<PlacedField>, &Arc<PlacedField>) -> bool| {
             self.held.len() == placed.len() && self.held.iter().zip(placed).all(|(held, field)| is(held, field))
         };

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use crate::{
     city::{CityModel, derived::Derive},
     geom::{
@@ -13,11 +15,13 @@ use crate::{
         BorderUnit, Class, Lens, LensBody, LensSprite, OwnRegion, Region,
         chosen::members,
         ray_path::{PictureFrame, RayPaths},
+        rendering::When,
         solids::{Place, RegionError, ShownCity, Solids},
     },
     render::{
         displayed::{Showing, Stand, Stands, looks_at_rest},
         enclosed::{Held, enclosed},
+        fields::PlacedFields,
         moved::Moved,
         occlusion::{Occlusion, Search},
         operations::AllTests,
@@ -27,7 +31,7 @@ use crate::{
         solids::{MOST_ENTRIES, SolidTable},
         volume::LensVolume,
     },
-    scene::Drawn,
+    scene::{Drawn, volume::MOST_VOLUMES},
     view::CameraError,
     visibility::Viewer,
 };
@@ -65,6 +69,8 @@ pub(super) struct Tools<'a> {
     pub rays: &'a RayPaths,
     /// See `rays`.
     pub names: Vec<&'a str>,
+    /// The fields that stand in the city.
+    pub fields: &'a PlacedFields,
     /// How the city is shown.
     pub moved: &'a Moved,
     /// The name of the lens.
@@ -278,6 +284,7 @@ fn tree_of(region: &Region, place: &Place, tools: &mut Tools) -> Result<Tree<Pla
 fn leaves_of(region: &Region, place: &Place, tools: &mut Tools) -> Result<Vec<Leaf>, RegionError> {
     let city = tools.city;
     let mut thresholds = None;
+    let fields = fields_that_hide(region, tools);
     let objects: Arc<[bool]> = match region {
         Region::Thematic(choice) => members(city.model, choice).into(),
         Region::Occluders(_) | Region::Case { .. } if !tools.is_enabled => vec![false; city.model.objects.len()].into(),
@@ -312,7 +319,25 @@ fn leaves_of(region: &Region, place: &Place, tools: &mut Tools) -> Result<Vec<Le
     };
     let shown = city.geometries.iter().map(|&g| &city.model.geometries[g as usize]);
     let bounds = shown.filter(|g| objects[g.object as usize]).fold(Aabb::EMPTY, |all, g| all.union(g.bounds));
-    Ok(vec![Leaf::Members(Members { objects, thresholds, bounds })])
+    let bounds = bounds.union(tools.fields.bounds_of(&fields));
+    Ok(vec![Leaf::Members(Members { objects, thresholds, fields, bounds })])
+}
+
+/// Which fields are occluders: of a lens whose test asks for points of interest those that hide the middle of one, in all its cases that hold of
+/// whatever it is.
+fn fields_that_hide(region: &Region, tools: &mut Tools) -> [bool; MOST_VOLUMES] {
+    let of = match region {
+        Region::Occluders(of) => of,
+        Region::Case { of, when } if when.last().is_some_and(When::is_always) => of,
+        _ => return [false; MOST_VOLUMES],
+    };
+    if !tools.is_enabled || tools.fields.is_empty() || !of.test.needs_poi() {
+        return [false; MOST_VOLUMES];
+    }
+    let pois = of.pois.iter().filter_map(|name| tools.stand.pois.iter().find(|poi| poi.name == *name));
+    let boxes: Vec<Aabb> = pois.map(|poi| tools.occlusion.box_of(&poi.place, tools.stand.city)).collect();
+    let places: Vec<DVec3> = boxes.iter().filter(|own| !own.is_empty()).map(Aabb::center).collect();
+    tools.fields.that_hide(&places, tools.viewer)
 }
 
 /// The objects that some shapes hold, one per object of the city.

@@ -535,6 +535,7 @@ impl Operations {
 
     /// Marks objects for a lens test by object, of `count` in all, or notes their thresholds; where that begins.
     pub fn add_members(&mut self, members: &Members, count: usize) -> u32 {
+        // Fields come behind all objects.
         let first = self.object_values.len();
         // That of no object first.
         match &members.thresholds {
@@ -542,11 +543,14 @@ impl Operations {
                 self.object_values.push(0);
                 self.object_values.extend(members.objects.iter().map(|&is_chosen| u32::from(is_chosen)));
                 self.object_values.resize(first + 1 + count, 0);
+                self.object_values.extend(members.fields.map(u32::from));
             }
             Some(thresholds) => {
                 self.object_values.extend([0, 0]);
                 self.object_values.extend(thresholds.iter().flatten().map(|threshold| threshold.to_bits()));
                 self.object_values.resize(first + 2 * (1 + count), 0);
+                let thresholds = members.fields.map(|is| [0, if is { 1.0_f32.to_bits() } else { 0 }]);
+                self.object_values.extend(thresholds.as_flattened());
             }
         }
         first as u32

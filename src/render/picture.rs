@@ -386,7 +386,7 @@ impl Studio {
                 // Volumes alone; whoever draws tells what is wrong with one.
                 let volumes = self.known().fields.of_scene(&scene.volumes, &Epochs::default()).unwrap_or_default();
                 extent = volumes.bounds();
-                boxes = volumes.0.iter().map(|field| field.bounds()).collect();
+                boxes = volumes.all.iter().map(|field| field.bounds()).collect();
             }
             first_view(&extent, &boxes, f64::from(size[0]) / f64::from(size[1]))
         })

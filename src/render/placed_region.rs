@@ -13,6 +13,7 @@ use crate::{
     },
     lens::{OwnRegion, PlacedSprite},
     render::{layout, solids::SolidPlace},
+    scene::volume::MOST_VOLUMES,
     shader::{Form, LensTest},
     view::View,
 };
@@ -47,6 +48,8 @@ pub struct Members {
     /// Where some come or go, from which threshold of a pixel on and below which each object is in, 0 to 1; `None`: members are
     /// wholly in.
     pub thresholds: Option<Arc<[[f32; 2]]>>,
+    /// Of each field that stands in the city, whether it is one.
+    pub fields: [bool; MOST_VOLUMES],
     /// Box around what is shown of them, metres.
     pub bounds: Aabb,
 }

@@ -116,6 +116,17 @@ pub(super) struct Resolved {
     pub suns: Vec<(Sun, Operations)>,
 }
 
+/// Who sees a scene, and through what.
+struct SeenBy<'a> {
+    eye: &'a Eye,
+    /// Its picture.
+    frame: &'a PictureFrame,
+    /// The lenses that bend its rays.
+    rays: &'a RayPaths,
+    /// The fields that stand in the city.
+    fields: &'a PlacedFields,
+}
+
 impl Surroundings<'_> {
     /// Box around what is drawn of the city, metres.
     fn bounds(&self) -> Aabb {
@@ -141,7 +152,10 @@ impl Surroundings<'_> {
         let eye = Eye::new(camera)?;
         let frame = PictureFrame::new(camera, size);
         let rays = self.rays(scene, &View::new(*camera, size, &self.reach())?, &mut known.ray_masks)?;
-        let mut found = self.placed(drawn, &eye, &frame, &rays, &deformations.moved, known)?;
+        let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;
+        let mut fields = known.fields.of_scene(&scene.volumes, &epochs).map_err(ResolveError::Scene)?;
+        let seen_by = SeenBy { eye: &eye, frame: &frame, rays: &rays, fields: &fields };
+        let mut found = self.placed(drawn, &seen_by, &deformations.moved, known)?;
         let technique = scene.style.technique;
         if let Some(problem) = technique.refuses(scene).or_else(|| regions::refused(scene, &found.volumes)) {
             return Err(ResolveError::Scene(problem.to_string()));
@@ -155,8 +169,6 @@ impl Surroundings<'_> {
         let sights = self.sights(scene, &eye, &deformations.moved, known);
         // What is moved may be anywhere.
         let seen = deformations.moved.is_nothing().then_some(&view);
-        let epochs = Epochs::new(scene).map_err(ResolveError::Scene)?;
-        let fields = known.fields.of_scene(&scene.volumes, &epochs).map_err(ResolveError::Scene)?;
         let placed = LensVolumes { volumes, tests };
         let (mut operations, mut moving) = self.operations(scene, &placed, &contents, sights, seen, fields.vary())?;
         let mut volumes = placed.volumes;
@@ -166,6 +178,7 @@ impl Surroundings<'_> {
         contents.wanted.extend(moving.wanted);
         contents.wanted.extend(shown);
         add_members(&mut operations, &mut volumes, &self.models(&contents));
+        fields.first_object = self.models(&contents).iter().map(|model| model.objects.len() as u32).sum();
         check_counts(&operations, &volumes)?;
         let (own, moved) = (self.reach(), &deformations.moved);
         let all = moved.bounds(&own).union(contents.bounds(&own, &volumes, moved)).union(moving.bounds);
@@ -209,7 +222,8 @@ impl Surroundings<'_> {
             let only = scene.lenses.get(number as usize).and_then(|lens| lens.ray()?.only.as_ref());
             if let Some(only) = only {
                 let objects: Arc<[bool]> = members(self.city.model, only).into();
-                let members = Members { objects: Arc::clone(&objects), thresholds: None, bounds: Aabb::EMPTY };
+                let fields = [false; crate::scene::volume::MOST_VOLUMES];
+                let members = Members { objects: Arc::clone(&objects), thresholds: None, fields, bounds: Aabb::EMPTY };
                 rim.only = Some(Chosen { first: operations.add_members(&members, count), objects });
                 choosing += 1;
             }
@@ -281,18 +295,21 @@ impl Surroundings<'_> {
         let moved = self.deformations(&drawn.scene, camera, known)?.moved;
         let view = View::new(*camera, size, &self.reach())?;
         let rays = self.rays(&drawn.scene, &view, &mut known.ray_masks)?;
-        Ok(self.placed(drawn, &Eye::new(camera)?, &PictureFrame::new(camera, size), &rays, &moved, known)?.volumes)
+        let (eye, frame) = (Eye::new(camera)?, PictureFrame::new(camera, size));
+        let epochs = Epochs::new(&drawn.scene).map_err(ResolveError::Scene)?;
+        let fields = known.fields.of_scene(&drawn.scene.volumes, &epochs).map_err(ResolveError::Scene)?;
+        let seen_by = SeenBy { eye: &eye, frame: &frame, rays: &rays, fields: &fields };
+        Ok(self.placed(drawn, &seen_by, &moved, known)?.volumes)
     }
 
     fn placed(
         &self,
         drawn: &Drawn,
-        eye: &Eye,
-        frame: &PictureFrame,
-        rays: &RayPaths,
+        seen_by: &SeenBy,
         moved: &Moved,
         known: &mut Known,
     ) -> Result<LensVolumes, ResolveError> {
+        let SeenBy { eye, frame, rays, fields } = *seen_by;
         let pois = &drawn.scene.pois;
         let stands = Stands::of_scene(&drawn.scene, self.city, pois, moved, &mut known.displayed);
         let mut tools = Tools {
@@ -306,6 +323,7 @@ impl Surroundings<'_> {
             frame: *frame,
             camera: eye.own_motion(),
             rays,
+            fields,
             names: drawn.scene.lenses.iter().map(|lens| lens.name.as_str()).collect(),
             moved,
             lens: "",

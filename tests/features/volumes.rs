@@ -235,6 +235,68 @@ fn lenses_in_which_nothing_of_the_city_is_act_on_volumes() {
     }
 }
 
+/// A volume before a point of interest gives way to an occlusion lens as a building does; one beside the way, behind it, or that hides little does not.
+#[test]
+fn a_volume_that_hides_a_point_of_interest_is_an_occluder() {
+    let mut studio = of_scene(&scene("").expect("a city"));
+    let mut drawn = |poi: &str, own: &str, lens: &str| {
+        let block = block(own);
+        // As opaque as that where it says how thick.
+        let block = if own.contains("thickness = 38") {
+            block.replace("opacity = [1.0, 1.0]", "opacity = [0.5, 0.5]")
+        } else {
+            block
+        };
+        let text = block.replace("[[volume]]", &format!("[[poi]]\nname = \"p\"\nat = {poi}\n[[volume]]"));
+        let scene = scene(&format!("{text}{lens}")).unwrap_or_else(|error| panic!("{error}"));
+        let [one, other] = [Backend::Specialised, Backend::Uber].map(|backend| {
+            let request = Request { backend, ..Request::plain([96, 54]) };
+            studio.render(&scene, &request).unwrap_or_else(|error| panic!("{error}")).rgba
+        });
+        assert!(one == other, "the back ends differ: {own} {lens}");
+        one
+    };
+    let looks = |rest: &str| {
+        format!(
+            "[[lens]]\nkind = \"occlusion\"\nbody = \"none\"\npoi = \"p\"\nforbid = {{ types = [\"Building\", \"SolitaryVegetationObject\", \"CityFurniture\"] }}\n{rest}\n"
+        )
+    };
+    let exact = looks("");
+    let (behind, before, beside) = ("[0, 60, 1]", "[0, -60, 30]", "[90, 60, 1]");
+    let gone = drawn(behind, "visible = false\n", "");
+    assert!(drawn(behind, "", "") != gone, "it is seen");
+    assert!(drawn(behind, "", &exact) == gone, "it is taken away");
+    assert!(drawn(behind, "", &looks("test = { kind = \"view-axis\" }")) == gone, "by any test that asks for points");
+    let with = drawn(before, "", "");
+    assert!(drawn(before, "", &exact) == with, "it is behind the point");
+    assert!(drawn(beside, "", &exact) == with, "it is beside the way");
+    assert!(drawn(behind, "", &looks("test = { kind = \"spherical\", radius = 20 }")) == with, "no test asks for it");
+    // A haze of which a metre takes a ten thousandth hides nothing.
+    let thin = "thickness = 400000.0\n";
+    assert!(drawn(behind, thin, &exact) == drawn(behind, thin, ""), "it hides little");
+    // The way through it is 38.18 m long: from y = -15.65 m, below its top, to y = 20 m. A half of the light is the limit.
+    let half = |metres: f64| format!("thickness = {metres}\n");
+    for (metres, hides) in [(38.1, true), (38.3, false)] {
+        let own = half(metres);
+        let shown = drawn(behind, &own, &exact);
+        assert_eq!(shown == gone, hides, "{metres} m");
+    }
+    // Drawn as an occluder is drawn, by what acts on volumes.
+    for render in [
+        "\"transparent\"",
+        "\"x-ray\"",
+        "[\"invert\"]",
+        "[{ as = \"transparent\", nearer = 1.0 }, { as = \"discard\" }]",
+    ] {
+        let shown = drawn(behind, "", &looks(&format!("render = {render}")));
+        assert!(shown != with && (shown != gone) != render.starts_with("[{"), "{render}");
+    }
+    // Surfaces and layers hide, too.
+    for mode in ["mode = \"slice\"\nslice = { axis = \"y\" }\n", "mode = \"maximum\"\n", "mode = \"x-ray\"\n"] {
+        assert!(drawn(behind, mode, &exact) == gone, "{mode}");
+    }
+}
+
 /// A file of four steps in time, each of a value of its own.
 fn series() -> PathBuf {
     let steps = 4;
