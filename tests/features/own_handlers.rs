@@ -509,10 +509,8 @@ fn a_lens_of_a_ray_handler_goes_with_others() {
     let ball = format!("shape = {{ kind = \"sphere\", center = {}, radius = 60.0 }}", town.point(town.at));
     for rest in [
         format!("[[lens]]\nname = \"a\"\n{ball}\neffects = [\"edges\"]\n"),
-        format!("[[lens]]\nname = \"a\"\n{ball}\neffects = [\"eraser\"]\n"),
         format!("[[lens]]\nname = \"a\"\n{ball}\neffects = [\"transparent\"]\n"),
         "[[lens]]\nname = \"glass\"\nkind = \"magnifier\"\nray = { radius = 0.3 }\n".to_owned(),
-        "[[lens]]\nname = \"other\"\nkind = \"sampling\"\nray = { radius = 0.3 }\n".to_owned(),
         "[[lens]]\nname = \"other\"\nkind = \"ray\"\nray = { radius = 0.2, bend = { kind = \"swirl\", turns = -0.4 } }\n".to_owned(),
     ] {
         let scene = town.scene(&format!("{eddy}{rest}")).unwrap();

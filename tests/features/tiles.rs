@@ -103,7 +103,7 @@ const SCENES: [&str; 23] = [
 #[test]
 fn tiles_make_the_picture_that_is_made_in_one_piece() {
     let mut all = Differences::default();
-    for (i, name) in SCENES.into_iter().enumerate().filter(|(i, _)| is_tried(*i, 2)) {
+    for (i, name) in SCENES.into_iter().enumerate().filter(|(i, _)| is_tried(*i, 4)) {
         let scene = scene(name);
         let mut studio = of_scene(&scene);
         let samples = if i % 3 == 0 { 4 } else { 1 };
@@ -125,7 +125,7 @@ fn tiles_have_every_look() {
         let mut scene = scene("market-square");
         scene.style.look = look;
         let mut studio = of_scene(&scene);
-        let request = Request { samples: 4, aovs: ALL, ..Request::plain(SIZE) };
+        let request = Request { samples: 2, aovs: ALL, ..Request::plain(SIZE) };
         let found = differences(&mut studio, &scene, &request, 96);
         println!("{look:?}: {found:?}");
         all.add(found);
