@@ -23,6 +23,8 @@ pub struct OwnBend {
     pub handler: u32,
     /// Its parameters as the GPU reads them.
     pub parameters: Vec<f32>,
+    /// How much it shows.
+    pub extent: OwnExtent,
     program: Arc<HostProgram>,
 }
 
@@ -50,20 +52,22 @@ pub struct OwnExtent {
 pub const MOST_SLOPE: f64 = 64.0;
 /// What lenses that show one place all over are taken to magnify.
 const MOST_MAGNIFIED: f64 = 32.0;
-/// Places along each side of the square around a lens, in its rim, at which it is asked how much it shows.
-const PLACES: u32 = 64;
+/// Places along each side of the square around a lens, in its rim, at which it is asked how much it shows: once for each picture.
+const PLACES: u32 = 32;
 
 impl OwnBend {
-    /// A use of a handler.
+    /// A use of a handler within a rim.
     ///
     /// # Errors
     /// There is no ray handler of this name.
-    pub fn new(used: &Handled) -> Result<Self, String> {
+    pub fn new(used: &Handled, rim: &Rim, is_parallel: bool) -> Result<Self, String> {
         let definition = used.definition(AskedBy::Rays)?;
         let (Some(program), Some(handler)) = (definition.host.clone(), number_of(&used.handler)) else {
             return Err("it does not run on the host".into());
         };
-        Ok(Self { handler, parameters: used.floats(definition), program })
+        let extent = OwnExtent { magnifies: 1.0, turn: None, per_radius: 1.0 };
+        let own = Self { handler, parameters: used.floats(definition), extent, program };
+        Ok(Self { extent: own.extent(rim, is_parallel), ..own })
     }
 
     /// What its handler is told of its lens: the radius in the picture's plane, twice, and whether the picture is in perspective.
@@ -93,7 +97,7 @@ impl OwnBend {
     }
 
     /// How much it shows within a rim, by what it says of a grid of places.
-    pub fn extent(&self, rim: &Rim, is_parallel: bool) -> OwnExtent {
+    fn extent(&self, rim: &Rim, is_parallel: bool) -> OwnExtent {
         let (center, radius) = (rim.center, rim.radius);
         let ahead = center.extend(-1.0).normalize_or(DVec3::NEG_Z);
         let mut extent = OwnExtent { magnifies: 1.0, turn: None, per_radius: std::f64::consts::PI };
@@ -151,7 +155,7 @@ mod tests {
     fn handler(name: &str, body: &str) -> OwnBend {
         let text = format!("//! name = \"{name}\"\n//! kind = \"ray\"\n//! spec = \"\"\n//! doc = \"\"\n\n{body}");
         effect::add(&format!("{name}.wgsl"), &text).unwrap_or_else(|error| panic!("{error}"));
-        OwnBend::new(&Handled::named(name)).unwrap()
+        OwnBend::new(&Handled::named(name), &rim(DVec2::ZERO, RayOutline::Circle), false).unwrap()
     }
 
     #[test]

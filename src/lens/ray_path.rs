@@ -277,7 +277,8 @@ impl RayPaths {
                     paths.images.push(image(rim, ImageBend::Round(fisheye.angle, fisheye.projection)));
                 }
                 Bend::Own(used) => {
-                    paths.images.extend(OwnBend::new(used).ok().map(|own| image(rim, ImageBend::Own(own))));
+                    let own = OwnBend::new(used, &rim, frame.is_parallel);
+                    paths.images.extend(own.ok().map(|own| image(rim, ImageBend::Own(own))));
                 }
             }
         }
@@ -295,7 +296,7 @@ impl RayPaths {
         self.images.iter().any(|lens| match &lens.bend {
             ImageBend::Sampled(_) => false,
             ImageBend::Round(..) => true,
-            ImageBend::Own(own) => own.extent(&lens.rim, self.is_parallel).turn.is_some(),
+            ImageBend::Own(own) => own.extent.turn.is_some(),
         })
     }
 
@@ -545,7 +546,7 @@ impl ImageLens {
             ImageBend::Round(..) if is_parallel => whole(1.0),
             ImageBend::Round(angle, FisheyeProjection::Angular) => whole(self.rim.radius / (0.5 * angle)),
             ImageBend::Round(angle, FisheyeProjection::Hemispherical) => whole(self.rim.radius / (0.5 * angle).sin()),
-            ImageBend::Own(own) => whole(own.extent(&self.rim, is_parallel).magnifies),
+            ImageBend::Own(own) => whole(own.extent.magnifies),
         }
     }
 }

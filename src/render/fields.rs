@@ -15,6 +15,8 @@ use crate::{
         epochs::{Epochs, Met},
         eye::PictureTile,
         layout,
+        placed_region::Leaf,
+        stats,
     },
     scene::volume::{MOST_VOLUMES, RAMP_ENTRIES, Volume, VolumeLight, VolumeMode},
     time::Moment,
@@ -751,6 +753,25 @@ impl PlacedFields {
         let mut found = [false; MOST_VOLUMES];
         found.iter_mut().zip(&self.all).for_each(|(is, field)| *is = hides(field));
         found
+    }
+
+    /// Those that some leaves of a lens have as members, as statistics have occluders.
+    pub fn told<'a>(&self, leaves: impl Iterator<Item = &'a Leaf>, eye: DVec3) -> Vec<stats::Occluder> {
+        let mut held = [false; MOST_VOLUMES];
+        for leaf in leaves {
+            if let Leaf::Members(members) = leaf {
+                held.iter_mut().zip(members.fields).for_each(|(is, own)| *is |= own);
+            }
+        }
+        let told = |field: &PlacedField| stats::Occluder {
+            id: field.volume.name.clone(),
+            why: vec!["volume".to_owned()],
+            coverage: None,
+            distance: field.bounds().distance_to(eye),
+            case: None,
+            weight: None,
+        };
+        self.all.iter().zip(held).filter(|(_, is)| *is).map(|(field, _)| told(field)).collect()
     }
 
     /// The box around some of them, metres.

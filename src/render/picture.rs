@@ -871,7 +871,12 @@ impl Studio {
             handlers: picture.statistics.handlers.clone(),
             lenses: (0..scene.lenses.len())
                 .map(|i| stats::LensFigures {
-                    occluders: self.occluders(&stands, &scene.lenses[i], &resolved.view),
+                    occluders: self.occluders(&stands, &scene.lenses[i], &resolved.view).map(|mut all| {
+                        let own = resolved.volumes.iter().filter(|volume| volume.lens == i as u32);
+                        let leaves = own.flat_map(|volume| volume.region.leaves());
+                        all.extend(resolved.fields.told(leaves.map(|leaf| &leaf.leaf), resolved.view.camera.eye));
+                        all
+                    }),
                     over_time: self.over_time(&stands, &scene.lenses[i], &resolved.view),
                     ..lens_figures(of, picture, i)
                 })

@@ -150,7 +150,7 @@ fn lenses(paths: &RayPaths) -> impl Iterator<Item = Lens<'_>> {
             Lens { rim: &lens.rim, magnifies: 1.0, round: Some(Round::of_fisheye(&lens.rim, *angle, *projection)) }
         }
         ImageBend::Own(own) => {
-            let extent = own.extent(&lens.rim, paths.is_parallel);
+            let extent = own.extent;
             let round = extent.turn.map(|turn| Round { turn, per_radius: extent.per_radius });
             Lens { rim: &lens.rim, magnifies: extent.magnifies, round }
         }

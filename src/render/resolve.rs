@@ -10,7 +10,6 @@ use crate::{
     geom::Aabb,
     lens::{
         chosen::{Choice, members},
-        own_bend::OwnBend,
         ray::{Bend, RayLens},
         ray_path::{Chosen, MOST_CHOOSING, PictureFrame, RayPaths, Scenery},
         solids::{ShownCity, Solids},
@@ -41,7 +40,7 @@ use crate::{
         volume::LensVolume,
     },
     scene::{Drawn, Scene, Sun, SunTime, Technique, Transparency},
-    shader::{Bends, MOST_RAY_LENSES, MOST_SLOTS, MOST_VOLUMES},
+    shader::{Bends, MOST_RAY_LENSES, MOST_SLOTS, MOST_VOLUMES, effect::AskedBy},
     time::Moment,
     view::{Camera, CameraError, View},
 };
@@ -253,7 +252,7 @@ impl Surroundings<'_> {
         for (number, ray, _) in &lenses {
             if let Bend::Own(used) = &ray.bend {
                 let wrong = |message| ResolveError::Scene(format!("lens {number}: ray.bend: {message}"));
-                OwnBend::new(used).map_err(wrong)?;
+                used.definition(AskedBy::Rays).map_err(wrong)?;
             }
         }
         let frame = PictureFrame::new(&view.camera, view.size);

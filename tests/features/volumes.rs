@@ -239,6 +239,7 @@ fn lenses_in_which_nothing_of_the_city_is_act_on_volumes() {
 #[test]
 fn a_volume_that_hides_a_point_of_interest_is_an_occluder() {
     let mut studio = of_scene(&scene("").expect("a city"));
+    let mut told = of_scene(&scene("").expect("a city"));
     let mut drawn = |poi: &str, own: &str, lens: &str| {
         let block = block(own);
         // As opaque as that where it says how thick.
@@ -290,6 +291,17 @@ fn a_volume_that_hides_a_point_of_interest_is_an_occluder() {
     ] {
         let shown = drawn(behind, "", &looks(&format!("render = {render}")));
         assert!(shown != with && (shown != gone) != render.starts_with("[{"), "{render}");
+    }
+    // Statistics name it, once, among the occluders.
+    let text =
+        block("").replace("[[volume]]", &format!("[[poi]]\nname = \"p\"\nat = {behind}\n[[volume]]\nname = \"cloud\""));
+    for (lens, expected) in [(&exact, vec!["cloud"]), (&looks("test = { kind = \"spherical\", radius = 20 }"), vec![])]
+    {
+        let scene = scene(&format!("{text}{lens}")).unwrap_or_else(|error| panic!("{error}"));
+        let request = Request { statistics: true, ..Request::plain([96, 54]) };
+        let picture = told.render(&scene, &request).unwrap_or_else(|error| panic!("{error}"));
+        let list = picture.statistics.lenses[0].occluders.clone().expect("occluders");
+        assert_eq!(list.iter().map(|occluder| occluder.id.as_str()).collect::<Vec<_>>(), expected, "{lens}");
     }
     // Surfaces and layers hide, too.
     for mode in ["mode = \"slice\"\nslice = { axis = \"y\" }\n", "mode = \"maximum\"\n", "mode = \"x-ray\"\n"] {
