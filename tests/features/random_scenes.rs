@@ -132,7 +132,7 @@ fn both_back_ends_draw_random_scenes_the_same() {
 
 /// Lenses that bend rays, over a random scene.
 fn bends(seed: u64) -> &'static str {
-    const ALL: [&str; 9] = [
+    const ALL: [&str; 10] = [
         "kind = \"magnifier\"\nray = { center = [0.4, 0.5], radius = 0.4, method = \"image\" }",
         "kind = \"magnifier\"\nray = { center = [0.4, 0.5], radius = 0.4 }",
         "kind = \"sampling\"\nray = { radius = 0.45, magnification = 3.0, method = \"vertices\" }",
@@ -144,6 +144,8 @@ fn bends(seed: u64) -> &'static str {
         "kind = \"magnifier\"\nray = { radius = 0.45, magnification = 0.6, border = 0.8, outline = \"square\", grid = true }\n[[lens]]\nname = \"b1\"\n\
          kind = \"magnifier\"\nray = { center = [0.6, 0.6], radius = 0.3 }\neffects = [\"sepia\"]",
         "kind = \"fisheye\"\nray = { angle_deg = 250 }",
+        "kind = \"magnifier\"\nray = { radius = 0.45, magnification = 3.0 }\n[[lens]]\nname = \"large\"\n\
+         shape = { kind = \"magnified\", lens = \"b0\", by = 1.4 }\neffects = [\"invert\", \"edges\"]",
     ];
     ALL[seed as usize % ALL.len()]
 }
