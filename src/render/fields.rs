@@ -771,7 +771,11 @@ impl PlacedFields {
             case: None,
             weight: None,
         };
-        self.all.iter().zip(held).filter(|(_, is)| *is).map(|(field, _)| told(field)).collect()
+        let mut all: Vec<stats::Occluder> =
+            self.all.iter().zip(held).filter(|(_, is)| *is).map(|(field, _)| told(field)).collect();
+        // Steps in time of one volume follow each other.
+        all.dedup_by(|a, b| a.id == b.id);
+        all
     }
 
     /// The box around some of them, metres.

@@ -872,7 +872,7 @@ impl Studio {
             lenses: (0..scene.lenses.len())
                 .map(|i| stats::LensFigures {
                     occluders: self.occluders(&stands, &scene.lenses[i], &resolved.view).map(|mut all| {
-                        let own = resolved.volumes.iter().filter(|volume| volume.lens == i as u32);
+                        let own = resolved.volumes.iter().filter(|volume| drawn.owner(volume.lens) == i as u32);
                         let leaves = own.flat_map(|volume| volume.region.leaves());
                         all.extend(resolved.fields.told(leaves.map(|leaf| &leaf.leaf), resolved.view.camera.eye));
                         all

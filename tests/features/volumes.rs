@@ -295,8 +295,12 @@ fn a_volume_that_hides_a_point_of_interest_is_an_occluder() {
     // Statistics name it, once, among the occluders.
     let text =
         block("").replace("[[volume]]", &format!("[[poi]]\nname = \"p\"\nat = {behind}\n[[volume]]\nname = \"cloud\""));
-    for (lens, expected) in [(&exact, vec!["cloud"]), (&looks("test = { kind = \"spherical\", radius = 20 }"), vec![])]
-    {
+    let by_cases = looks("render = [{ as = \"x-ray\", nearer = 1.0 }, { as = \"transparent\" }]");
+    for (lens, expected) in [
+        (&exact, vec!["cloud"]),
+        (&by_cases, vec!["cloud"]),
+        (&looks("test = { kind = \"spherical\", radius = 20 }"), vec![]),
+    ] {
         let scene = scene(&format!("{text}{lens}")).unwrap_or_else(|error| panic!("{error}"));
         let request = Request { statistics: true, ..Request::plain([96, 54]) };
         let picture = told.render(&scene, &request).unwrap_or_else(|error| panic!("{error}"));
