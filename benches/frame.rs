@@ -17,7 +17,11 @@ use veduta::{
     city::load::{LoadOptions, Quiet, load},
     geom::{Aabb, Shape},
     gpu::Gpu,
-    lens::{Lens, LensBody, Region},
+    lens::{
+        Lens, LensBody, Region,
+        kind::Magnifier,
+        ray::{RayLens, RayMethod},
+    },
     measure::{
         ratio::{Estimate, in_turn, ratios},
         stage::plain_scene,
@@ -79,6 +83,12 @@ fn main() {
         for (name, scene) in [("lens", &lensed), ("ten", &many), ("few", &few), ("thousand", &thousand)] {
             frames.push((format!("{v} {name} outlined"), Frame::Full(outlined(scene))));
         }
+        for method in [RayMethod::Rays, RayMethod::Image] {
+            let magnified = with_magnifier(&scene, method);
+            let name = format!("{v} {}", if method == RayMethod::Rays { "magnifier" } else { "magnifier by image" });
+            frames.push((format!("{name} outlined"), Frame::Full(outlined(&magnified))));
+            frames.push((name, Frame::Full(magnified)));
+        }
         frames.push((format!("{v} few"), Frame::Full(few)));
         frames.push((format!("{v} thousand"), Frame::Full(thousand)));
         frames.push((format!("{v} bare"), Frame::Bare(view(&scene))));
@@ -92,7 +102,7 @@ fn main() {
         let found = frames.iter().find(|(n, _)| n == name);
         &found
             .unwrap_or_else(|| {
-                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten, few, thousand, these four also outlined, ten all, lens moving, moving, see-through or see-through city")
+                panic!("no frame is called {name}; V1 or V2 with bare, all, plain, lens, ten, few, thousand, these four also outlined, ten all, lens moving, moving, see-through, see-through city, magnifier or magnifier by image, these two also outlined")
             })
             .1
     };
@@ -119,7 +129,7 @@ fn main() {
 }
 
 /// Frames A and B, and what their ratio is to be at most.
-const ROWS: [(&str, &str, f64); 24] = [
+const ROWS: [(&str, &str, f64); 30] = [
     ("V1 plain", "V1 bare", 1.30),
     ("V2 all", "V2 bare", 1.45),
     ("V2 plain", "V2 bare", 1.45),
@@ -144,6 +154,12 @@ const ROWS: [(&str, &str, f64); 24] = [
     ("V1 see-through city", "V1 plain", 10.0),
     ("V2 see-through city", "V2 plain", 10.0),
     ("V2 see-through city", "V2 all", 10.0),
+    ("V1 magnifier", "V1 plain", 1.60),
+    ("V2 magnifier", "V2 plain", 1.60),
+    ("V1 magnifier outlined", "V1 plain", 1.60),
+    ("V2 magnifier outlined", "V2 plain", 1.60),
+    ("V1 magnifier by image", "V1 plain", 1.60),
+    ("V2 magnifier by image", "V2 plain", 1.60),
 ];
 
 /// Frames in which a lens moves, and the same in which it does not.
@@ -163,6 +179,14 @@ fn outlined(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     scene.lenses.iter_mut().for_each(|lens| lens.body = LensBody::default());
     scene
+}
+
+/// The scene with a magnifier over a tenth of the picture.
+fn with_magnifier(scene: &Scene, method: RayMethod) -> Scene {
+    let [width, height] = SIZE.map(f64::from);
+    let ray = RayLens { method, radius: (0.1 * width / height / std::f64::consts::PI).sqrt(), ..RayLens::magnifier() };
+    let lens = Lens { body: LensBody::None, ..Lens::plain("magnifier", Magnifier { ray }, [0.8, 0.2, 0.1]) };
+    Scene { lenses: vec![lens], ..scene.clone() }
 }
 
 /// The scene with one of its lenses some metres away.

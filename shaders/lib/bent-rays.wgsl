@@ -70,7 +70,7 @@ fn rim_share(lens: u32, across: vec2f) -> f32 {
     let place = (across - ray_lens(lens).center) / ray_lens(lens).radius;
     let reach = max(abs(place.x), abs(place.y));
     var share = select(length(place), reach, ray_lens(lens).outline == OUTLINE_SQUARE);
-    if ray_lens(lens).outline == OUTLINE_FIELD {
+    if RAY_FIELDS && ray_lens(lens).outline == OUTLINE_FIELD {
         share = select(FAR_AWAY, field_share(ray_lens(lens).first_knot, place), reach < 1.0);
     }
     return share;
@@ -108,13 +108,14 @@ fn is_bent(pixel: vec2f) -> bool {
     return lenses_over(pixel) != 0u;
 }
 
-// How many times as far as others the rays of the pixels within a reach turn at most, from one to the next.
-fn most_stretch(pixel: vec2f, reach: f32) -> f32 {
+// How many times as far as others the rays of the pixels within a reach turn at most, from one to the next, up to a distance.
+fn most_stretch(pixel: vec2f, reach: f32, distance: f32) -> f32 {
     let across = across_of_pixel(pixel);
     let width = reach * max(abs(view.across_from_pixel.x), abs(view.across_from_pixel.y));
     var may = false;
     for (var lens = 0u; lens < RAY_IMAGES + RAY_PLANES; lens++) {
-        may |= rim_share(lens, across) < 1.0 + 1.4143 * width / ray_lens(lens).radius;
+        let is_met = lens < RAY_IMAGES || distance <= 0.0 || distance > ray_lens(lens).distance;
+        may |= is_met & (rim_share(lens, across) < 1.0 + 1.4143 * width / ray_lens(lens).radius);
     }
     return select(1.0, ray_lenses.stretch, may);
 }

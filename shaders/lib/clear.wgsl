@@ -3,6 +3,6 @@
 // pixel's width there.
 fn is_clear_of_form(s: Region, form: u32, pixel: vec2i, reach: i32) -> bool {
     let width = max(abs(view.across_from_pixel.x), abs(view.across_from_pixel.y));
-    let turn = 1.4143 * f32(reach) * width * most_stretch(vec2f(pixel) + 0.5, f32(reach));
+    let turn = 1.4143 * f32(reach) * width * most_stretch(vec2f(pixel) + 0.5, f32(reach), -s.a.z);
     return form_is_clear(ray_at_distance(vec2f(pixel) + 0.5, -s.a.z), s, form, turn);
 }

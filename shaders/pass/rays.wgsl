@@ -2,6 +2,8 @@
 
 override SMOOTH: bool = false;      // whether some faces of the picture have a normal per vertex
 
+//@found
+
 @vertex
 fn vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
     return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
@@ -12,7 +14,7 @@ fn follow(@builtin(position) place: vec4f) -> Followed {
     if (lenses_over(place.xy) & ray_lenses.followed) == 0u {
         discard;
     }
-    let hit = first_of_pixel(place.xy, NO_HIT);
+    let hit = found_by_pixel(place.xy);
     var followed: Followed;
     if hit.t < FAR_AWAY {
         let look = look_of(place.xy, hit);

@@ -28,6 +28,7 @@ pub mod placement;
 pub mod ramp;
 pub mod ray;
 pub mod ray_path;
+pub mod ray_walk;
 pub mod region;
 pub mod relief;
 pub mod rendering;

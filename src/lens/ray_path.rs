@@ -28,7 +28,7 @@ use crate::{
     geom::{Shape, shape::FlatFigure},
     lens::{
         chosen::Choice,
-        own_bend::{OwnBend, Seen},
+        own_bend::OwnBend,
         ray::{Bend, Feature, FisheyeProjection, Magnify, RayLens, RayMethod, RayOutline, SampledRadius},
         share_field::{self, ShareField},
     },
@@ -132,42 +132,6 @@ pub struct RayPaths {
     pub images: Vec<ImageLens>,
     /// Those with planes, bottom first.
     pub planes: Vec<PlaneLens>,
-}
-
-/// A line in view space: x right, y up, −z forward; metres from the eye.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ViewLine {
-    /// Where it begins.
-    pub origin: DVec3,
-    /// Where it goes, per unit of its parameter: by one metre along the view axis; of a fisheye by one metre.
-    pub direction: DVec3,
-}
-
-impl ViewLine {
-    /// The place at a parameter.
-    pub fn at(&self, t: f64) -> DVec3 {
-        self.origin + t * self.direction
-    }
-}
-
-/// A straight piece of a path.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathPiece {
-    /// From where to where it goes, of the line's parameter.
-    pub range: [f64; 2],
-    /// The line that it lies on.
-    pub line: ViewLine,
-}
-
-/// What happens to a ray at a distance.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathEvent {
-    /// D, metres.
-    pub distance: f64,
-    /// Which of the planes it is.
-    pub plane: usize,
-    /// Whether the ray ceases to be bent by it there; otherwise it meets it.
-    pub ends: bool,
 }
 
 /// How far shapes go that have no end, metres.
@@ -402,111 +366,6 @@ impl RayPaths {
         let all = self.images.iter().map(of_image).chain(self.planes.iter().map(of_plane));
         all.reduce(|a, b| Some(a? * b?)).unwrap_or(Some(1.0))
     }
-
-    /// What happens along the view axis, nearest first.
-    pub fn events(&self) -> Vec<PathEvent> {
-        let of = |(plane, lens): (usize, &PlaneLens)| {
-            [(lens.distance, false), (lens.until, true)].map(|(distance, ends)| PathEvent { distance, plane, ends })
-        };
-        let mut events: Vec<PathEvent> = self.planes.iter().enumerate().flat_map(of).collect();
-        events.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.ends.cmp(&b.ends)));
-        events
-    }
-
-    /// The path of the ray of a place of the picture, piece by piece; at least one.
-    pub fn pieces(&self, across: DVec2) -> Vec<PathPiece> {
-        let mut place = across;
-        for lens in &self.images {
-            let share = lens.rim.share(place);
-            if share >= 1.0 {
-                continue;
-            }
-            match &lens.bend {
-                ImageBend::Sampled(radius) => {
-                    // Along the way from the middle, whatever the outline.
-                    let scale = if share > 0.0 { radius.at(share) / share } else { 0.0 };
-                    place = lens.rim.center + scale * (place - lens.rim.center);
-                }
-                ImageBend::Round(angle, projection) => {
-                    let line = self.round(&lens.rim, place, *angle, *projection);
-                    return vec![PathPiece { range: [0.0, f64::INFINITY], line }];
-                }
-                ImageBend::Own(own) => match own.seen(place, lens.rim.center, lens.rim.radius, self.is_parallel) {
-                    Seen::Place(seen) => place = seen,
-                    Seen::Direction(direction) => {
-                        let line = ViewLine { origin: DVec3::ZERO, direction };
-                        return vec![PathPiece { range: [0.0, f64::INFINITY], line }];
-                    }
-                },
-            }
-        }
-        let (mut origin, mut slope) = if self.is_parallel { (place, DVec2::ZERO) } else { (DVec2::ZERO, place) };
-        let mut bent = vec![DVec2::ZERO; self.planes.len()];
-        let (mut pieces, mut from) = (Vec::new(), 0.0);
-        for PathEvent { distance, plane, ends } in self.events() {
-            let lens = &self.planes[plane];
-            let line = ViewLine { origin: origin.extend(0.0), direction: slope.extend(-1.0) };
-            pieces.push(PathPiece { range: [from, distance], line });
-            from = distance;
-            // Changes of the slope, and of where the line begins, so that it goes through the same place.
-            let by = if ends { bent[plane] } else { self.bent(lens, origin + distance * slope) };
-            let (by_slope, by_origin) = match (ends, self.is_parallel) {
-                (false, _) => (by, -distance * by),
-                (true, true) => (-by, distance * by),
-                // The direction in which the eye sees that place.
-                (true, false) => (-lens.distance / distance * by, lens.distance * by),
-            };
-            slope += by_slope;
-            origin += by_origin;
-            bent[plane] = by;
-        }
-        let line = ViewLine { origin: origin.extend(0.0), direction: slope.extend(-1.0) };
-        pieces.push(PathPiece { range: [from, f64::INFINITY], line });
-        pieces
-    }
-
-    /// What a plane adds to the slope of a ray that meets it there, metres from the view axis.
-    fn bent(&self, lens: &PlaneLens, at: DVec2) -> DVec2 {
-        let scale = if self.is_parallel { 1.0 } else { lens.distance };
-        let share = lens.rim.share(at / scale);
-        if share >= 1.0 {
-            return DVec2::ZERO;
-        }
-        -(1.0 - lens.found_back(share)) * lens.power * (at - scale * lens.rim.center)
-    }
-
-    /// The line of a place of a fisheye, from the eye.
-    fn round(&self, rim: &Rim, place: DVec2, angle: f64, projection: FisheyeProjection) -> ViewLine {
-        // Parallel rays have no direction to the middle but one.
-        let middle = if self.is_parallel { DVec2::ZERO } else { rim.center };
-        let forward = middle.extend(-1.0).normalize_or(DVec3::NEG_Z);
-        let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
-        let up = right.cross(forward);
-        let from = (place - rim.center) / rim.radius;
-        let share = from.length();
-        let turn = match projection {
-            FisheyeProjection::Angular => 0.5 * angle * share,
-            FisheyeProjection::Hemispherical => (share * (0.5 * angle).sin()).clamp(-1.0, 1.0).asin(),
-        };
-        // sin(turn) / share, at 0 its limit.
-        let slope = if share > 1e-9 {
-            turn.sin() / share
-        } else {
-            match projection {
-                FisheyeProjection::Angular => 0.5 * angle,
-                FisheyeProjection::Hemispherical => (0.5 * angle).sin(),
-            }
-        };
-        let direction = turn.cos() * forward + slope * (from.x * right + from.y * up);
-        ViewLine { origin: DVec3::ZERO, direction: direction.normalize_or(forward) }
-    }
-
-    /// The line that a path lies on at a parameter.
-    pub fn line(&self, across: DVec2, t: f64) -> ViewLine {
-        let pieces = self.pieces(across);
-        let piece = pieces.iter().find(|piece| t <= piece.range[1]).unwrap_or(&pieces[0]);
-        piece.line
-    }
 }
 
 impl RayPaths {
@@ -581,7 +440,7 @@ impl PlaneLens {
     }
 
     /// How far the ray of this share of the radius has found back to where it would go: 0 in the core, 1 at the rim.
-    fn found_back(&self, share: f64) -> f64 {
+    pub(super) fn found_back(&self, share: f64) -> f64 {
         if self.border > 0.0 { ((share - (1.0 - self.border)) / self.border).max(0.0) } else { 0.0 }
     }
 

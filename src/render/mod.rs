@@ -74,6 +74,7 @@ mod programs;
 mod ray_fields;
 mod ray_meshes;
 mod ray_sources;
+mod ray_tracer;
 mod ray_vertices;
 mod refinery;
 mod regions;

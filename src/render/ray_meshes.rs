@@ -24,6 +24,7 @@ use crate::{
         city_source::Source,
         layout,
         plan::FramePlan,
+        ray_tracer::TracedCity,
         ray_vertices::CityTriangles,
         resource::synced::Room,
     },
@@ -31,12 +32,13 @@ use crate::{
 };
 
 /// As `pass/rays.wgsl` has them.
-const NO_BOXES: u32 = u32::MAX;
-const IN_PLANE: u32 = 1;
+pub(super) const NO_BOXES: u32 = u32::MAX;
+pub(super) const IN_PLANE: u32 = 1;
 const FACADE: u32 = 2;
 const SMOOTH: u32 = 4;
 const PLACED: u32 = 8;
-const LAYER_SHIFT: u32 = 8;
+pub(super) const LAYER_SHIFT: u32 = 8;
+pub(super) const LAYER_MASK: u32 = 0xff;
 const SECTION_SHIFT: u32 = 16;
 /// Sections with images of a city, at most.
 const MOST_SECTIONS: usize = 0xffff;
@@ -53,7 +55,7 @@ const FINEST: i32 = -20;
 /// Boxes are larger by this part of the city: what places of rays are rounded by where boxes are counted.
 const PADDING: f64 = 1.0 / (1 << 22) as f64;
 
-type Word = [u32; 4];
+pub(super) type Word = [u32; 4];
 
 /// What a mesh was made of: buffers, and the runs of their indices.
 type MadeOf = Vec<(wgpu::Buffer, Vec<Range<u32>>)>;
@@ -194,12 +196,20 @@ impl RayMeshes {
         Ok(grown)
     }
 
-    /// The cities as the shader reads them. `placed`: the `City` of each offset, or nothing where all stands where it is.
-    pub fn uniform(&self, plan: &FramePlan, placed: &[u8]) -> Vec<u8> {
-        let view = &plan.input.view;
+    /// The cities as the shader reads them, with what their meshes are told by.
+    pub fn uniform(&self, view: &View, placed: &[u8]) -> Vec<u8> {
+        let mut all: Vec<layout::RayCity> = self.traced(view, placed).iter().map(|city| city.own).collect();
+        let count = all.len() as u32;
+        all.resize(MOST_RAY_CITIES, bytemuck::Zeroable::zeroed());
+        let mut bytes = bytemuck::bytes_of(&[count, 0, 0, 0]).to_vec();
+        bytes.extend_from_slice(bytemuck::cast_slice(&all));
+        bytes
+    }
+
+    /// What rays are followed through. `placed`: the `City` of each offset, or nothing where all stands where it is.
+    pub fn traced(&self, view: &View, placed: &[u8]) -> Vec<TracedCity<'_>> {
         let view_from_world = view.basis.view_from_world();
-        let mut all: Vec<layout::RayCity> = Vec::new();
-        for standing in &self.standing {
+        let of = |standing: &Standing| {
             let (mesh, first) = (&self.meshes[standing.mesh], self.begins[standing.mesh]);
             let Stand { own, linear, eye } = standing.stand(view, placed);
             let inverse = linear.inverse();
@@ -207,7 +217,7 @@ impl RayMeshes {
             let whole = steps.round().clamp(DVec3::splat(-FARTHEST_EYE), DVec3::splat(FARTHEST_EYE));
             let [from_view_x, from_view_y, from_view_z] = columns(inverse * view_from_world.transpose(), mesh.step);
             let [world_x, world_y, world_z] = columns(linear, own.scale.into());
-            all.push(layout::RayCity {
+            let own = layout::RayCity {
                 from_view_x,
                 from_view_y,
                 from_view_z,
@@ -222,13 +232,10 @@ impl RayMeshes {
                 world_x,
                 world_y,
                 world_z,
-            });
-        }
-        let count = all.len() as u32;
-        all.resize(MOST_RAY_CITIES, bytemuck::Zeroable::zeroed());
-        let mut bytes = bytemuck::bytes_of(&[count, 0, 0, 0]).to_vec();
-        bytes.extend_from_slice(bytemuck::cast_slice(&all));
-        bytes
+            };
+            TracedCity { own, words: &mesh.words, first }
+        };
+        self.standing.iter().map(of).collect()
     }
 
     /// The triangles of each, as a view has them.
@@ -420,7 +427,7 @@ impl Made<'_> {
         let grid = |place: DVec3| ((place - origin) / step).round().as_ivec3();
         let vertex = |i: u32| &source.vertices[i as usize];
         let provoking = vertex(indices[source.provoking]);
-        let mut kind = drawn.layer.min(255) << LAYER_SHIFT;
+        let mut kind = drawn.layer.min(LAYER_MASK) << LAYER_SHIFT;
         let mut rest: Vec<Word> = Vec::new();
         if let Some(plane) = planes.get(indices[source.provoking] as usize) {
             kind |= IN_PLANE;

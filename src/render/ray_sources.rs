@@ -14,7 +14,8 @@ use glam::{DVec2, DVec3};
 use crate::{
     lens::{
         ray::{FisheyeProjection, RayMethod, RayOutline},
-        ray_path::{ImageBend, PathPiece, RayPaths, Rim},
+        ray_path::{ImageBend, RayPaths, Rim},
+        ray_walk::PathPiece,
     },
     render::{bent, eye::PictureTile, layout},
     view::{Basis, Camera, Projection, View},

@@ -198,6 +198,7 @@ impl Surroundings<'_> {
             images: rays.images.len() as u32,
             planes: rays.planes.len() as u32,
             grids: rays.rims().any(|rim| rim.grid.is_some()),
+            fields: rays.rims().any(|rim| rim.field.is_some()),
             choosing,
             own: rays.own_handlers(),
         });

@@ -7,6 +7,9 @@ use crate::render::light::SHADOW_SIZE;
 pub struct Settings {
     /// Whether chunks that nearer ones hide are left out where that pays: on software adapters.
     pub culls_hidden: bool,
+    /// Whether the processor follows rays that lenses bend, where nothing hides parts of the city from them: on software adapters, which follow them
+    /// more slowly.
+    pub traces_rays: bool,
     /// Whether the city is not drawn again where only lenses move that hide nothing of it. Where frames are measured it is drawn in each.
     pub holds_geometry: bool,
     /// Whether lists of many lenses are narrowed to what each tile shows.
@@ -36,6 +39,7 @@ impl Settings {
     pub fn new(is_software: bool) -> Self {
         Self {
             culls_hidden: is_software,
+            traces_rays: is_software,
             holds_geometry: true,
             narrows_lists: true,
             most_layers: None,

@@ -30,6 +30,25 @@ pub(super) const LEFT_OUT: &str = "    if is_bent(at) {
     }
 ";
 
+/// What the ray of a pixel meets, where it is followed here.
+pub(super) const FOLLOWED: &str = "fn found_by_pixel(at: vec2f) -> Hit {
+    return first_of_pixel(at, NO_HIT);
+}
+";
+
+/// The same where it was followed on the processor (`render::ray_tracer`): of each pixel of a part of the tile five words.
+pub(super) const TRACED: &str = "@group(3) @binding(2) var<storage, read> traced_hits: array<u32>;
+
+fn found_by_pixel(at: vec2f) -> Hit {
+    let place = vec2u(at) - vec2u(traced_hits[0], traced_hits[1]);
+    let first = 4u + 5u * (place.y * traced_hits[2] + place.x);
+    let triangle = traced_hits[first + 1u];
+    let weights = vec2f(bitcast<f32>(traced_hits[first + 3u]), bitcast<f32>(traced_hits[first + 4u]));
+    let t = select(FAR_AWAY, bitcast<f32>(traced_hits[first]), triangle > 0u);
+    return Hit(t, max(triangle, 1u) - 1u, traced_hits[first + 2u], weights);
+}
+";
+
 /// What rays are followed through, in the last group.
 pub(super) const LAST_GROUP: &str = "@group(3) @binding(0) var<uniform> ray_cities: RayCities;
 @group(3) @binding(1) var<storage, read> ray_words: array<vec4u>;

@@ -49,6 +49,8 @@ pub enum Module {
     CombinedSprite(Vec<Form>),
     /// Bent rays, followed through the city, what is hidden, and how many lenses bend them.
     Rays(Option<Program>, Bends),
+    /// What bent rays meet that were followed on the processor, and how many lenses bend them.
+    TracedRays(Bends),
     /// Images of what they meet.
     RayImages(Bends),
     /// Corners where lenses show them, what is hidden, and how many lenses bend rays.
@@ -185,9 +187,12 @@ impl Module {
                 let own = plan.regions.as_ref().map(|regions| regions::marks(plan, regions, lenses));
                 text.fill("handlers", own.unwrap_or_default())
             }
-            Self::Rays(..) | Self::RayVertices(..) | Self::RayWarp(_) | Self::RayImages(_) | Self::RayLayers(_) => {
-                self.rays_filled(text, &hidden)
-            }
+            Self::Rays(..)
+            | Self::TracedRays(_)
+            | Self::RayVertices(..)
+            | Self::RayWarp(_)
+            | Self::RayImages(_)
+            | Self::RayLayers(_) => self.rays_filled(text, &hidden),
             Self::Shadow(Some(program)) => text.fill("handlers", hidden(program, Eye::Sun)),
             Self::Filter(effect) => {
                 let filter = &handlers[*effect as usize];
@@ -204,10 +209,17 @@ impl Module {
         match self {
             Self::Rays(program, _) | Self::RayVertices(program, _) => {
                 let asked = program.as_ref().map(|p| (hidden(p, Eye::Rays), p.has().has_cities()));
-                text.fill("handlers", followed::source(asked))
+                let followed = text
+                    .fill("handlers", followed::source(asked))
                     .fill("met", followed::FIRST)
-                    .fill("bindings", followed::LAST_GROUP)
+                    .fill("bindings", followed::LAST_GROUP);
+                if matches!(self, Self::Rays(..)) { followed.fill("found", followed::FOLLOWED) } else { followed }
             }
+            Self::TracedRays(_) => text
+                .fill("handlers", followed::source(None))
+                .fill("met", followed::FIRST)
+                .fill("bindings", followed::LAST_GROUP)
+                .fill("found", followed::TRACED),
             Self::RayWarp(bends) => {
                 const FIRST: u32 = 5;
                 let own = carried::of_lens(*bends, FIRST);
@@ -237,9 +249,11 @@ impl Module {
             | Self::Layers(program, _)
             | Self::RayLayers(program)
             | Self::Lines(program) => program.has().bends,
-            Self::Rays(_, bends) | Self::RayVertices(_, bends) | Self::RayImages(bends) | Self::RayWarp(bends) => {
-                *bends
-            }
+            Self::Rays(_, bends)
+            | Self::TracedRays(bends)
+            | Self::RayVertices(_, bends)
+            | Self::RayImages(bends)
+            | Self::RayWarp(bends) => *bends,
             _ => Bends::default(),
         }
     }
@@ -268,7 +282,7 @@ impl Module {
             Self::RayVertices(Some(program), _) => {
                 return files::of_city(program, &[FACADE, RAY_WALK, RAY_VERTICES]);
             }
-            Self::Rays(None, _) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAYS],
+            Self::Rays(None, _) | Self::TracedRays(_) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAYS],
             Self::Rays(Some(program), _) => return files::of_city(program, &[FACADE, RAY_WALK, RAYS]),
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, FACADE, GEOMETRY]),
             Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SURFACE, HOLE, SHADOW],

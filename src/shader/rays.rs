@@ -13,13 +13,13 @@ use crate::shader::{
 /// that are bent `lib/bent-rays.wgsl` has both.
 pub(super) fn source(bends: Bends, is_carried: bool) -> String {
     if bends.is_any() {
-        let Bends { images, planes, grids, choosing, own } = bends;
+        let Bends { images, planes, grids, fields, choosing, own } = bends;
         let lenses = if is_carried && bends.is_one() { CARRIED } else { IN_UNIFORM };
         let grids = if grids { "" } else { NO_GRIDS };
         let acting = if choosing > 0 { ON_SOME } else { ON_ALL };
         let own = own_rays(&own);
         return format!(
-            "const RAY_IMAGES: u32 = {images}u;\nconst RAY_PLANES: u32 = {planes}u;\nconst RAY_CHOOSING: u32 = {choosing}u;\n{lenses}{acting}{own}{grids}"
+            "const RAY_IMAGES: u32 = {images}u;\nconst RAY_PLANES: u32 = {planes}u;\nconst RAY_CHOOSING: u32 = {choosing}u;\nconst RAY_FIELDS: bool = {fields};\n{lenses}{acting}{own}{grids}"
         );
     }
     let own = handlers().iter().find(|h| (h.kind, h.mode) == (EffectKind::Ray, Mode::Optional));
@@ -189,4 +189,4 @@ pub(super) const TAKEN_FROM_UNIFORM: &str = "    let ray_lens_0 = ray_lenses.len
 ";
 
 /// Rays that are not bent are the same all along.
-const STRAIGHT: &str = "\n// (x, y, -1) for parallel rays, too.\nfn picture_place(ray: Ray) -> vec3f {\n    return ray.origin + ray.direction;\n}\n\nfn picture_place_at(distance: f32, place: vec3f) -> vec3f {\n    return place;\n}\n\nfn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {\n    return ray_of_pixel(pixel);\n}\n\nfn line_ends(distance: f32) -> f32 {\n    return FAR_AWAY;\n}\n\nfn see_pixel(pixel: vec2f, distance: f32) {}\n\nfn see_object(object: u32) {}\n\nfn most_stretch(pixel: vec2f, reach: f32) -> f32 {\n    return 1.0;\n}\n";
+const STRAIGHT: &str = "\n// (x, y, -1) for parallel rays, too.\nfn picture_place(ray: Ray) -> vec3f {\n    return ray.origin + ray.direction;\n}\n\nfn picture_place_at(distance: f32, place: vec3f) -> vec3f {\n    return place;\n}\n\nfn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {\n    return ray_of_pixel(pixel);\n}\n\nfn line_ends(distance: f32) -> f32 {\n    return FAR_AWAY;\n}\n\nfn see_pixel(pixel: vec2f, distance: f32) {}\n\nfn see_object(object: u32) {}\n\nfn most_stretch(pixel: vec2f, reach: f32, distance: f32) -> f32 {\n    return 1.0;\n}\n";

@@ -16,6 +16,7 @@ use crate::{
         plan::FramePlan,
         programs::Programs,
         ray_meshes::RayMeshes,
+        ray_tracer::{TracedView, trace},
         ray_vertices::pieces,
         resource::{
             bindings::{DEPTHS, DRAWN, GroupLayout, NUMBERS, STORAGE, UNIFORM, all_of, group, whole},
@@ -29,17 +30,26 @@ use crate::{
         },
     },
     scene::Technique,
-    shader::{Bends, Module, Program},
+    shader::{Bends, MOST_RAY_LENSES, Module, Program},
 };
 
 /// Group 3: cities, and the triangles of their meshes.
 pub static RAYS: GroupLayout = GroupLayout { label: "rays", entries: &[(0, DRAWN, UNIFORM), (1, DRAWN, STORAGE)] };
 
+/// The same, and what was traced on the processor.
+static TRACED: GroupLayout =
+    GroupLayout { label: "traced rays", entries: &[(0, DRAWN, UNIFORM), (1, DRAWN, STORAGE), (2, S::FRAGMENT, STORAGE)] };
+
+/// Pixels that the processor traces at a time, at most: five words each are what any adapter binds.
+const MOST_TRACED: u64 = 6_000_000;
+
 /// What is drawn of lenses that bend rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Step {
-    /// What rays meet that are followed.
+    /// What rays meet that are followed,
     Follow,
+    /// or were traced on the processor.
+    Trace,
     /// Nothing, where corners are moved,
     Clear,
     /// and what moved corners make of the city.
@@ -80,6 +90,7 @@ impl RayKey {
     fn module(&self) -> Module {
         match self.step {
             Step::Follow => Module::Rays(self.hidden.clone(), self.bends),
+            Step::Trace => Module::TracedRays(self.bends),
             Step::Clear | Step::Move => Module::RayVertices(self.hidden.clone(), self.bends),
         }
     }
@@ -99,17 +110,18 @@ impl PipelineKey for RayKey {
 
     fn parts(&self, _: wgpu::TextureFormat) -> Parts {
         let (vertex, fragment) = match self.step {
-            Step::Follow => ("vertex", "follow"),
+            Step::Follow | Step::Trace => ("vertex", "follow"),
             Step::Clear => ("vertex", "cleared"),
             Step::Move => ("vertex_moved", "moved"),
         };
         let (compare, buffers) = match self.step {
-            Step::Follow | Step::Clear => (wgpu::CompareFunction::Always, Vec::new()),
+            Step::Follow | Step::Trace | Step::Clear => (wgpu::CompareFunction::Always, Vec::new()),
             Step::Move => (wgpu::CompareFunction::Greater, vec![vertices::pieces()]),
         };
+        let rays = if self.step == Step::Trace { &TRACED } else { &RAYS };
         Parts {
             module: self.module(),
-            groups: vec![Some(&VIEW), Some(&CUT_CITY), Some(&LENSES), Some(&RAYS)],
+            groups: vec![Some(&VIEW), Some(&CUT_CITY), Some(&LENSES), Some(rays)],
             constants: vec![("SMOOTH", flag(self.smooth))],
             stage: Stage::Draw(Draw {
                 targets: in_order([
@@ -174,6 +186,8 @@ impl PipelineKey for RayImageKey {
 pub struct Where {
     /// To what is opaque, in lenses that find it so.
     opaque: Vec<PictureTile>,
+    /// The same on the processor: what is around them.
+    traced: Option<PictureTile>,
     /// In place of that corners are moved.
     moved: Vec<PictureTile>,
     /// To all that is translucent, whatever the lens: images do not show it.
@@ -188,6 +202,11 @@ impl Where {
     /// Whether something of it is drawn where the opaque city is.
     fn draws(&self) -> bool {
         !(self.opaque.is_empty() && self.moved.is_empty())
+    }
+
+    /// How what is opaque is found.
+    fn step(&self) -> Step {
+        if self.traced.is_some() { Step::Trace } else { Step::Follow }
     }
 
     /// Whether rays are followed.
@@ -212,6 +231,9 @@ struct Kept {
     meshes: RayMeshes,
     cities: Synced,
     group: wgpu::BindGroup,
+    /// What the processor traced, and the group with it.
+    traced: Synced,
+    traced_group: Option<wgpu::BindGroup>,
     /// Triangles that are cut, and how many alike.
     pieces: Synced,
     counts: Vec<u32>,
@@ -223,13 +245,28 @@ impl Kept {
         let cities = Synced::new(stage.gpu, "cities of rays", wgpu::BufferUsages::UNIFORM)?;
         let group = group_of(stage, &meshes, &cities);
         let pieces = Synced::new(stage.gpu, "triangles that are cut", wgpu::BufferUsages::VERTEX)?;
-        Ok(Self { meshes, cities, group, pieces, counts: Vec::new() })
+        let traced = Synced::new(stage.gpu, "traced rays", wgpu::BufferUsages::STORAGE)?;
+        Ok(Self { meshes, cities, group, traced, traced_group: None, pieces, counts: Vec::new() })
     }
+}
+
+fn traced_group_of(stage: &Preparing, kept: &Kept) -> wgpu::BindGroup {
+    let buffers = [kept.cities.buffer(), kept.meshes.words.buffer(), kept.traced.buffer()];
+    let entries: Vec<_> = (0..).zip(buffers.map(whole)).collect();
+    group(stage.gpu, TRACED.label, &stage.pipelines.layout(&TRACED), &entries)
 }
 
 fn group_of(stage: &Preparing, meshes: &RayMeshes, cities: &Synced) -> wgpu::BindGroup {
     let entries = [(0, whole(cities.buffer())), (1, whole(meshes.words.buffer()))];
     group(stage.gpu, RAYS.label, &stage.pipelines.layout(&RAYS), &entries)
+}
+
+/// Whether the processor traces what lies in a part.
+fn is_traced(plan: &FramePlan, part: PictureTile) -> bool {
+    let bends = plan.input.operations.bends;
+    let pixels = u64::from(part.size[0]) * u64::from(part.size[1]);
+    let is_plain = plan.cuts.picture.is_none() && bends.choosing == 0 && bends.own == [0; MOST_RAY_LENSES];
+    plan.settings.traces_rays && is_plain && pixels <= MOST_TRACED
 }
 
 /// Whether some of what is drawn has images, storeys and windows left out.
@@ -320,7 +357,8 @@ impl Pass for Rays {
         let opaque = parts(&|method| method == RayMethod::Rays);
         let moved = parts(&|method| method == RayMethod::Vertices);
         let layers = if plan.plans.layering.is_some() { parts(&|_| true) } else { Vec::new() };
-        let all = Where { opaque, moved, layers };
+        let traced = opaque.iter().copied().reduce(PictureTile::around).filter(|part| is_traced(plan, *part));
+        let all = Where { opaque, traced, moved, layers };
         (input.technique == Technique::Accumulate && !all.is_empty()).then_some(all)
     }
 
@@ -331,7 +369,7 @@ impl Pass for Rays {
     fn add_keys(&self, input: Option<&Where>, plan: &FramePlan, programs: &Programs, keys: &mut Keys) {
         let Some(parts) = input else { return };
         let steps = [
-            (Step::Follow, !parts.opaque.is_empty()),
+            (parts.step(), !parts.opaque.is_empty()),
             (Step::Clear, !parts.moved.is_empty()),
             (Step::Move, !parts.moved.is_empty()),
         ];
@@ -351,7 +389,7 @@ impl Pass for Rays {
         let (gpu, plan) = (stage.gpu, stage.plan);
         let mut is_stale = kept.meshes.fit(gpu, plan, &stage.cities, parts.follows())?;
         let placed = stage.cities.uniforms(plan.input.view.camera.eye, plan.input.operations);
-        is_stale |= kept.cities.sync(gpu, &kept.meshes.uniform(plan, &placed))?;
+        is_stale |= kept.cities.sync(gpu, &kept.meshes.uniform(&plan.input.view, &placed))?;
         if !parts.moved.is_empty() {
             let view = &plan.input.view;
             let pieces = pieces(plan.input.rays, view, &kept.meshes.cities(view, &placed));
@@ -360,6 +398,18 @@ impl Pass for Rays {
         }
         if is_stale {
             kept.group = group_of(stage, &kept.meshes, &kept.cities);
+        }
+        if let Some(part) = parts.traced {
+            let cities = kept.meshes.traced(&plan.input.view, &placed);
+            let view = plan.view_uniform();
+            let view = TracedView { across_from_pixel: view.across_from_pixel, near: view.near };
+            let hits = trace(plan.input.rays, &view, &cities, part);
+            let mut words = vec![part.origin[0], part.origin[1], part.size[0], 0];
+            words.extend_from_slice(bytemuck::cast_slice(&hits));
+            is_stale |= kept.traced.sync(gpu, &words)?;
+            if is_stale || kept.traced_group.is_none() {
+                kept.traced_group = Some(traced_group_of(stage, &kept));
+            }
         }
         self.0 = Some(kept);
         Ok(())
@@ -373,7 +423,7 @@ impl Pass for Rays {
         board: &mut Board,
     ) -> Result<(), GpuError> {
         let Some(kept) = &self.0 else { return Ok(()) };
-        let Where { opaque, moved, layers } = parts;
+        let Where { opaque, traced, moved, layers } = parts;
         board.put(Followed { parts: layers.clone(), group: kept.group.clone() });
         if !parts.draws() {
             return Ok(());
@@ -408,7 +458,10 @@ impl Pass for Rays {
         let key = |step| RayKey::new(plan, frame.programs, step);
         if !opaque.is_empty() {
             draw(recording, "bent rays", &|pass| {
-                pass.set_pipeline(pipelines.get(&key(Step::Follow)));
+                pass.set_pipeline(pipelines.get(&key(parts.step())));
+                if let Some(group) = kept.traced_group.as_ref().filter(|_| traced.is_some()) {
+                    pass.set_bind_group(3, group, &[]);
+                }
                 draw_parts(pass, opaque)
             });
         }

@@ -41,6 +41,8 @@ pub struct Bends {
     pub planes: u32,
     /// Whether some of them have grids.
     pub grids: bool,
+    /// Whether fields tell the outlines of some.
+    pub fields: bool,
     /// How many of them act on some objects alone.
     pub choosing: u32,
     /// Numbers of the ray handlers of users that some have, ascending; 0 behind these.
