@@ -46,6 +46,7 @@ use crate::{
         moving::MovingObjects,
         parts::{Part, Tiling, whole},
         pass::masks::CLEAR_MASKS,
+        ray_tracer::TracedFigures,
         renderer::Renderer,
         resolve::{Known, ResolveError, Resolved, Surroundings},
         resource::recording::PassRecord,
@@ -139,6 +140,8 @@ pub struct Picture {
     pub(super) layers: LayerFigures,
     /// What their method took.
     pub(super) method: MethodFigures,
+    /// Rays that the processor followed.
+    pub(super) traced: TracedFigures,
     /// Objects by lens that have no form that its content derives: shown as they are, left out, shown as something else.
     pub(super) not_derived: [BTreeMap<u32, u32>; 3],
     /// By lens the thousandths of its strength at which its deformation is used, where it would fold space.
@@ -790,6 +793,7 @@ impl Studio {
             picture.layers.bands += layers.bands;
             picture.layers.excess += layers.excess;
             picture.method.add(&self.renderer.method_figures());
+            picture.traced.add(self.renderer.traced_figures());
             let after = made(&self.renderer.gpu);
             picture.made.iter_mut().zip(after).zip(before).for_each(|((all, after), before)| *all += after - before);
             if sample == 0 {
@@ -859,6 +863,8 @@ impl Studio {
                     merged: picture.method.merged,
                     dropped: picture.method.dropped,
                 }),
+                traced: (picture.traced.rays > 0)
+                    .then_some(stats::Traced { rays: picture.traced.rays, ms: picture.traced.ms }),
                 deformed: picture.deformed.map(|of| stats::Deformed {
                     met: of.met,
                     triangles: of.triangles,

@@ -4,6 +4,8 @@
 //! Four rays of pixels that lie together go through a hierarchy at once, one in each lane. Paths are told in f64, lines in a city's own space in f32 as
 //! in the shader: what decides whether a triangle is met is exact in both.
 
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
 use glam::{BVec4A, DMat3, DVec2, DVec3, IVec3, Vec3, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
@@ -81,10 +83,28 @@ pub struct TracedHit {
     pub weights: [f32; 2],
 }
 
-/// What the rays of pixels meet that lie in lenses whose rays are followed, row by row of a part of the tile; of others nothing.
-pub fn trace(paths: &RayPaths, view: &TracedView, cities: &[TracedCity], part: PictureTile) -> Vec<TracedHit> {
+/// What the processor followed for a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TracedFigures {
+    /// Rays of pixels, of all samples.
+    pub rays: u64,
+    /// How long that took, milliseconds.
+    pub ms: f64,
+}
+
+impl TracedFigures {
+    /// Adds what a frame took.
+    pub fn add(&mut self, frame: Self) {
+        self.rays += frame.rays;
+        self.ms += frame.ms;
+    }
+}
+
+/// What the rays of pixels meet that lie in lenses whose rays are followed, row by row of a part of the tile, of others nothing; and how many rays these are.
+pub fn trace(paths: &RayPaths, view: &TracedView, cities: &[TracedCity], part: PictureTile) -> (Vec<TracedHit>, u64) {
     let [width, height] = part.size.map(|n| n as usize);
     let mut hits = vec![TracedHit::default(); width * height];
+    let followed = AtomicU64::new(0);
     let rims: Vec<&Rim> = paths.rims().filter(|rim| rim.method == RayMethod::Rays).collect();
     let is_bent = |across: DVec2| rims.iter().any(|rim| is_within(rim, across, view.pixel()));
     let corner = DVec2::new(part.origin[0].into(), part.origin[1].into()) + 0.5;
@@ -98,9 +118,11 @@ pub fn trace(paths: &RayPaths, view: &TracedView, cities: &[TracedCity], part: P
                     let across = view.across(corner + DVec2::new((x + dx) as f64, (2 * pair + dy) as f64));
                     (x + dx < width && 2 * pair + dy < height && is_bent(across)).then_some(across)
                 });
-                if places == [None; LANES] {
+                let rays = places.iter().flatten().count();
+                if rays == 0 {
                     continue;
                 }
+                followed.fetch_add(rays as u64, Relaxed);
                 for (own, place) in pieces.iter_mut().zip(places) {
                     own.clear();
                     place.into_iter().for_each(|place| own.extend_from_slice(walk.pieces(place)));
@@ -112,7 +134,7 @@ pub fn trace(paths: &RayPaths, view: &TracedView, cities: &[TracedCity], part: P
             }
         },
     );
-    hits
+    (hits, followed.into_inner())
 }
 
 /// Whether a place may lie within a rim as f32 has it: up to a pixel beside.
@@ -155,12 +177,7 @@ impl Found {
         if self.triangle[lane] == 0 {
             return TracedHit::default();
         }
-        TracedHit {
-            t: self.t[lane],
-            triangle: self.triangle[lane],
-            city: self.city[lane],
-            weights: self.weights[lane],
-        }
+        TracedHit { t: self.t[lane], triangle: self.triangle[lane], city: self.city[lane], weights: self.weights[lane] }
     }
 }
 
@@ -183,7 +200,8 @@ impl Tracer<'_> {
         let count = paths.iter().map(Vec::len).max().unwrap_or(0);
         for i in 0..count {
             // All rays turn at the same distances, but for those that never do.
-            let ends = |path: &Vec<PathPiece>| path.get(i).map_or(-1.0, |piece| piece.range[1].min(FAR_AWAY.into()) as f32);
+            let ends =
+                |path: &Vec<PathPiece>| path.get(i).map_or(-1.0, |piece| piece.range[1].min(FAR_AWAY.into()) as f32);
             let to = Vec4::from_array(paths.each_ref().map(ends));
             let line = |path: &Vec<PathPiece>| path.get(i).map_or(STILL, |piece| piece.line);
             let lines = paths.each_ref().map(line);

@@ -25,6 +25,7 @@ use crate::{
             context::{FrameContext, Pass as _, Preparing},
         },
         plan::{Adapter, FramePlan, Stayed},
+        ray_tracer::TracedFigures,
         resource::{
             pipelines::Pipelines,
             recording::{PassRecord, Recording},
@@ -290,6 +291,11 @@ impl Renderer {
         let passes = &self.view.passes;
         let all = [passes.layers.figures, passes.slots.figures, passes.stochastic.figures];
         all.into_iter().find(|figures| figures.bands > 0).unwrap_or_default()
+    }
+
+    /// What the processor followed for the last frame.
+    pub fn traced_figures(&self) -> TracedFigures {
+        self.view.passes.rays.figures
     }
 
     /// What the method of the last frame took and left out.

@@ -98,6 +98,17 @@ pub struct Frame {
     pub deformed: Option<Deformed>,
     /// Translucent layers of all samples; `null` where nothing is seen through.
     pub layers: Option<Layers>,
+    /// Rays that lenses bend and the processor followed, not the GPU; `null` where it followed none.
+    pub traced: Option<Traced>,
+}
+
+/// Rays that the processor followed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Traced {
+    /// How many, of all samples.
+    pub rays: u64,
+    /// How long that took, milliseconds.
+    pub ms: f64,
 }
 
 /// What deformation lenses move.

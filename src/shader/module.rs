@@ -282,7 +282,9 @@ impl Module {
             Self::RayVertices(Some(program), _) => {
                 return files::of_city(program, &[FACADE, RAY_WALK, RAY_VERTICES]);
             }
-            Self::Rays(None, _) | Self::TracedRays(_) => &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAYS],
+            Self::Rays(None, _) | Self::TracedRays(_) => {
+                &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAYS]
+            }
             Self::Rays(Some(program), _) => return files::of_city(program, &[FACADE, RAY_WALK, RAYS]),
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, FACADE, GEOMETRY]),
             Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SURFACE, HOLE, SHADOW],

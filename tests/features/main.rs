@@ -67,6 +67,7 @@ mod techniques;
 mod thematic;
 mod tiles;
 mod time;
+mod traced_rays;
 mod transparency;
 mod volumes;
 mod warnings;

@@ -430,34 +430,40 @@ pub fn draw(studio: &mut Studio, scene: &Scene, size: [u32; 2], backend: Backend
     studio.render(scene, &Request { aovs, backend, ..Request::plain(size) }).expect("a picture")
 }
 
-/// Pixels of a lens that were compared, and those that are wrong, with the farthest that a depth is off.
+/// The same where the processor follows rays, and where the GPU does.
+pub fn draw_both(studio: &mut Studio, scene: &Scene, size: [u32; 2]) -> [Picture; 2] {
+    let usual = studio.renderer.settings.traces_rays;
+    let pictures = [true, false].map(|traces_rays| {
+        studio.renderer.settings.traces_rays = traces_rays;
+        draw(studio, scene, size, Backend::Specialised)
+    });
+    studio.renderer.settings.traces_rays = usual;
+    pictures
+}
+
+/// Pixels of a lens that were compared, and those that are wrong where the processor follows rays or where the GPU does, with the farthest that a
+/// depth is off.
 pub fn compare(studio: &mut Studio, camera: Camera, lens: &Lens, size: [u32; 2]) -> (usize, usize, f64) {
     let scene = studio::scene(camera, vec![lens.clone()]);
-    let picture = draw(studio, &scene, size, Backend::Specialised);
+    let pictures = draw_both(studio, &scene, size);
     let view = View::new(camera, size, &studio.extent()).expect("a view");
     let sight = Sight::new(studio, camera, size);
     let reference = Bent::new(lens.ray().expect("a lens that bends rays"), &view);
-    let (ids, depths) = (picture.object_id.expect("ids"), picture.depth.expect("depths"));
+    let shown = pictures.map(|picture| (picture.object_id.expect("ids"), picture.depth.expect("depths")));
     let met = |pixel: DVec2| sight.first(&path(&reference, sight.place(pixel), sight.is_parallel));
-    let of_pixel = |i: usize| {
-        let pixel = sight.pixel(i);
-        let from = sight.place(pixel) - reference.center;
-        if reference.radius_at(from) >= reference.radius {
-            return None;
-        }
-        let own = met(pixel);
+    // Whether what a pixel shows is right, where its path meets this, and how far its depth is off.
+    let judge = |pixel: DVec2, own: Option<(u32, f64)>, id: u32, depth: f64| {
         // Most are the same in the middle of the pixel already.
         match own {
-            Some((object, t)) if object + 1 == ids[i] => {
-                let off = (t / f64::from(depths[i]) - 1.0).abs();
+            Some((object, t)) if object + 1 == id => {
+                let off = (t / depth - 1.0).abs();
                 if off <= DEPTH_OFF {
-                    return Some((true, off));
+                    return (true, off);
                 }
             }
-            None if ids[i] == 0 => return Some((true, 0.0)),
+            None if id == 0 => return (true, 0.0),
             _ => {}
         }
-        let depth = f64::from(depths[i]);
         let beyond = |[nearest, farthest]: [f64; 2]| (nearest / depth - 1.0).max(1.0 - farthest / depth).max(0.0);
         let ends = |all: &mut dyn Iterator<Item = f64>| {
             all.fold([f64::INFINITY, 0.0], |[low, high], t| [low.min(t), high.max(t)])
@@ -471,26 +477,36 @@ pub fn compare(studio: &mut Studio, camera: Camera, lens: &Lens, size: [u32; 2])
             });
             let met: Vec<Option<(u32, f64)>> =
                 std::iter::once(own).chain(around.map(|aside| met(pixel + aside))).collect();
-            let Some(shown) = ids[i].checked_sub(1) else {
+            let Some(shown) = id.checked_sub(1) else {
                 // The plain ground, or nothing.
                 if met.iter().any(Option::is_none) {
-                    return Some((true, 0.0));
+                    return (true, 0.0);
                 }
                 continue;
             };
             let off = beyond(ends(&mut met.iter().flatten().filter(|(object, _)| *object == shown).map(|(_, t)| *t)));
             if off <= DEPTH_OFF {
-                return Some((true, off));
+                return (true, off);
             }
             // An edge that it shares with another object is seen there, however narrow its faces are.
             let off = beyond(ends(&mut met.iter().flatten().map(|(_, t)| *t)));
             if off <= DEPTH_OFF && sight.is_beside(shown, &reference, pixel, depth) {
-                return Some((true, off));
+                return (true, off);
             }
         }
-        Some((false, f64::INFINITY))
+        (false, f64::INFINITY)
     };
-    let found: Vec<(bool, f64)> = (0..ids.len()).into_par_iter().filter_map(of_pixel).collect();
+    let of_pixel = |i: usize| {
+        let pixel = sight.pixel(i);
+        let from = sight.place(pixel) - reference.center;
+        if reference.radius_at(from) >= reference.radius {
+            return None;
+        }
+        let own = met(pixel);
+        let judged = shown.each_ref().map(|(ids, depths)| judge(pixel, own, ids[i], f64::from(depths[i])));
+        judged.into_iter().reduce(|(a, off_a), (b, off_b)| (a && b, off_a.max(off_b)))
+    };
+    let found: Vec<(bool, f64)> = (0..shown[0].0.len()).into_par_iter().filter_map(of_pixel).collect();
     let wrong = found.iter().filter(|(is_right, _)| !is_right).count();
     (found.len(), wrong, found.iter().map(|(_, off)| *off).fold(0.0, f64::max))
 }

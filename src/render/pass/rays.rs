@@ -1,5 +1,7 @@
 //! Bent rays: what lenses that bend them show, in the targets of what is opaque (`pass/rays.wgsl`).
 
+use std::time::Instant;
+
 use wgpu::ShaderStages as S;
 
 use crate::{
@@ -16,7 +18,7 @@ use crate::{
         plan::FramePlan,
         programs::Programs,
         ray_meshes::RayMeshes,
-        ray_tracer::{TracedView, trace},
+        ray_tracer::{TracedFigures, TracedView, trace},
         ray_vertices::pieces,
         resource::{
             bindings::{DEPTHS, DRAWN, GroupLayout, NUMBERS, STORAGE, UNIFORM, all_of, group, whole},
@@ -37,8 +39,10 @@ use crate::{
 pub static RAYS: GroupLayout = GroupLayout { label: "rays", entries: &[(0, DRAWN, UNIFORM), (1, DRAWN, STORAGE)] };
 
 /// The same, and what was traced on the processor.
-static TRACED: GroupLayout =
-    GroupLayout { label: "traced rays", entries: &[(0, DRAWN, UNIFORM), (1, DRAWN, STORAGE), (2, S::FRAGMENT, STORAGE)] };
+static TRACED: GroupLayout = GroupLayout {
+    label: "traced rays",
+    entries: &[(0, DRAWN, UNIFORM), (1, DRAWN, STORAGE), (2, S::FRAGMENT, STORAGE)],
+};
 
 /// Pixels that the processor traces at a time, at most: five words each are what any adapter binds.
 const MOST_TRACED: u64 = 6_000_000;
@@ -224,7 +228,11 @@ pub struct Followed {
 
 /// What the pass keeps, once there were lenses that bend rays.
 #[derive(Debug)]
-pub struct Rays(Option<Kept>);
+pub struct Rays {
+    kept: Option<Kept>,
+    /// What the processor followed for the last frame.
+    pub figures: TracedFigures,
+}
 
 #[derive(Debug)]
 struct Kept {
@@ -348,7 +356,11 @@ impl Pass for Rays {
     ];
 
     fn new(_: &Gpu) -> Result<Self, GpuError> {
-        Ok(Self(None))
+        Ok(Self { kept: None, figures: TracedFigures::default() })
+    }
+
+    fn begin(&mut self, _: &FramePlan) {
+        self.figures = TracedFigures::default();
     }
 
     fn wanted<'a>(plan: &'a FramePlan<'a>) -> Option<Where> {
@@ -382,7 +394,7 @@ impl Pass for Rays {
     }
 
     fn prepare(&mut self, parts: &Where, stage: &mut Preparing) -> Result<(), GpuError> {
-        let mut kept = match self.0.take() {
+        let mut kept = match self.kept.take() {
             Some(kept) => kept,
             None => Kept::new(stage)?,
         };
@@ -403,7 +415,9 @@ impl Pass for Rays {
             let cities = kept.meshes.traced(&plan.input.view, &placed);
             let view = plan.view_uniform();
             let view = TracedView { across_from_pixel: view.across_from_pixel, near: view.near };
-            let hits = trace(plan.input.rays, &view, &cities, part);
+            let started = Instant::now();
+            let (hits, rays) = trace(plan.input.rays, &view, &cities, part);
+            self.figures = TracedFigures { rays, ms: started.elapsed().as_secs_f64() * 1e3 };
             let mut words = vec![part.origin[0], part.origin[1], part.size[0], 0];
             words.extend_from_slice(bytemuck::cast_slice(&hits));
             is_stale |= kept.traced.sync(gpu, &words)?;
@@ -411,7 +425,7 @@ impl Pass for Rays {
                 kept.traced_group = Some(traced_group_of(stage, &kept));
             }
         }
-        self.0 = Some(kept);
+        self.kept = Some(kept);
         Ok(())
     }
 
@@ -422,7 +436,7 @@ impl Pass for Rays {
         recording: &mut Recording,
         board: &mut Board,
     ) -> Result<(), GpuError> {
-        let Some(kept) = &self.0 else { return Ok(()) };
+        let Some(kept) = &self.kept else { return Ok(()) };
         let Where { opaque, traced, moved, layers } = parts;
         board.put(Followed { parts: layers.clone(), group: kept.group.clone() });
         if !parts.draws() {
