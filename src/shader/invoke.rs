@@ -8,7 +8,7 @@ use crate::shader::{
         prototype::{EffectKind, Mode, Stage},
     },
     plan::uber::Uber,
-    writer::{OF_FIELDS, as_is, moment_here},
+    writer::{HIGHLIGHT_LEFT, HIGHLIGHTED, MATERIAL_BEGINS, MATERIAL_ENDS, OF_FIELDS, as_is, moment_here},
 };
 
 /// The handlers of the module, with their numbers.
@@ -71,7 +71,13 @@ pub(super) fn invoke(uber: &Uber, word: &str, kinds: &[EffectKind], handlers: &[
             (true, EffectKind::Material) => format!("contained_material({call})"),
             (true, _) => format!("contained({call})"),
         };
-        let call = if handler.kind == EffectKind::Scene { format!("before_sky({call}, point)") } else { call };
+        let call = match handler.kind {
+            EffectKind::Scene if has(uber, EffectKind::Material, handlers) => {
+                format!("{as_is}(before_sky({call}, point)) + point.highlight")
+            }
+            EffectKind::Scene => format!("before_sky({call}, point)"),
+            _ => call,
+        };
         let _ = writeln!(text, "        case {number}u: {{ above = {as_is}({call}); }}");
     }
     text.push_str("        default: {}\n    }\n");
@@ -155,7 +161,7 @@ pub(super) fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
     let mut text = "fn shade(point: ptr<function, Point>, classes: Classes) -> vec3f {\n".to_owned();
     text.push_str(if uber.varies { moment_here(uber.partly) } else { "" });
     if has(EffectKind::Material) {
-        text.push_str("    var material = Material(as_is((*point).base), (*point).emission, vec3f(0.0), 32.0);\n");
+        text.push_str(MATERIAL_BEGINS);
         let call = format!("material = invoke_material(material, *point, by{share});\n");
         let of_fields = used(uber, handlers).find(|(_, h)| h.name == OF_FIELDS).map_or(u32::MAX, |(number, _)| number);
         let call = match uber.fields {
@@ -163,7 +169,7 @@ pub(super) fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
             true => format!("if (*point).surface != NO_SURFACE || by.handler == {of_fields}u {{\n    {call}}}\n"),
         };
         text.push_str(&each(uber, "MATERIALS", &call));
-        text.push_str("    (*point).base = material.base;\n    (*point).emission = vec3f(0.0);\n");
+        text.push_str(MATERIAL_ENDS);
     }
     if has(EffectKind::Light) {
         text.push_str("    (*point).arriving = as_is((*point).arriving);\n");
@@ -172,7 +178,7 @@ pub(super) fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
         text.push_str("    (*point).shade = luminance((*point).arriving);\n");
     }
     let plus = if has(EffectKind::Material) {
-        text.push_str("    (*point).highlight = as_is(highlights(material, *point));\n");
+        text.push_str(HIGHLIGHTED);
         " + (*point).highlight"
     } else {
         ""
@@ -186,6 +192,7 @@ pub(super) fn shade(uber: &Uber, handlers: &[EffectDefinition]) -> String {
         let _ = writeln!(text, "    color = {}(color, *point);", air.wgsl_name());
     }
     text.push_str("    color = before_sky(color, *point);\n");
+    text.push_str(if has(EffectKind::Material) { HIGHLIGHT_LEFT } else { "" });
     text.push_str("    return styled(color, *point, classes);\n}\n\n");
     text
 }
@@ -197,18 +204,10 @@ pub(super) fn styled(uber: &Uber, handlers: &[EffectDefinition]) -> String {
         return "fn styled(start: vec3f, point: Point, classes: Classes) -> vec3f {\n    return start;\n}\n\n"
             .to_owned();
     }
-    let highlight = match has(EffectKind::Material) {
-        true if fades(uber) => "        color += point.highlight * share;\n",
-        true => "        color += point.highlight;\n",
-        false => "",
-    };
     let share = share_argument(uber);
     let body = format!(
-        "let is_scene_style = by.kind == 1u;
-if !is_scene_style || point.surface != NO_SURFACE {{
+        "if by.kind != 1u || point.surface != NO_SURFACE {{
     color = invoke_style(color, point, by{share});
-    if is_scene_style {{
-{highlight}    }}
 }}
 "
     );

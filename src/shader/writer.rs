@@ -95,7 +95,7 @@ impl Writer<'_> {
     }
 
     /// The call of a handler, laid over `subject` as the step says.
-    fn call(step: &Step, handler: &EffectDefinition, subject: &str, point: &str) -> String {
+    fn call(&self, step: &Step, handler: &EffectDefinition, subject: &str, point: &str) -> String {
         let name = handler.wgsl_name();
         let own = match handler.slots() {
             0 => String::new(),
@@ -115,6 +115,9 @@ impl Writer<'_> {
         }
         let as_is = as_is(handler.kind);
         call = format!("{as_is}({call})");
+        if handler.kind == EffectKind::Scene && self.has(EffectKind::Material) {
+            call = format!("{as_is}({call} + {point}.highlight)");
+        }
         let Some((blend, weight)) = step.blend.zip(step.weight(handler)) else { return call };
         let weight = format!("parameters[{weight}].x");
         match is_material {
@@ -131,14 +134,10 @@ impl Writer<'_> {
             _ => "color",
         };
         let point = if handler.kind.is_before_color() { "*point" } else { "point" };
-        let value = Self::call(step, handler, subject, point);
+        let value = self.call(step, handler, subject, point);
         let mut conditions = Vec::new();
-        let mut plus = "";
         if handler.kind == EffectKind::Scene {
             conditions.push("point.surface != NO_SURFACE".to_owned());
-            if self.has(EffectKind::Material) {
-                plus = " + point.highlight";
-            }
         }
         if handler.kind == EffectKind::Material && self.plan.fields && handler.name != OF_FIELDS {
             conditions.push("(*point).surface != NO_SURFACE".to_owned());
@@ -148,17 +147,16 @@ impl Writer<'_> {
                 EffectKind::Material => format!("material_as_is(blended_material(1u, {subject}, {value}, share))"),
                 _ => format!("as_is(weighed({subject}, {value}, share))"),
             };
-            let plus = if plus.is_empty() { "" } else { " + point.highlight * share" };
             conditions.insert(0, "share > 0.0".to_owned());
             let conditions = conditions.join(" && ");
             return format!(
-                "    {{\n        let share = {share};\n        if {conditions} {{\n            {subject} = {laid}{plus};\n        }}\n    }}\n"
+                "    {{\n        let share = {share};\n        if {conditions} {{\n            {subject} = {laid};\n        }}\n    }}\n"
             );
         }
         if let Scope::Lens(lens, class) = step.scope {
             conditions.insert(0, format!("{}(classes.lens_{lens})", class.function()));
         }
-        let line = format!("{subject} = {value}{plus}");
+        let line = format!("{subject} = {value}");
         match conditions.is_empty() {
             true => format!("    {line};\n"),
             false => format!("    if {} {{\n        {line};\n    }}\n", conditions.join(" && ")),
@@ -186,9 +184,9 @@ impl Writer<'_> {
         let mut text = format!("fn shade{suffix}(point: ptr<function, Point>, classes: Classes) -> vec3f {{\n");
         text.push_str(if self.plan.varies { moment_here(self.plan.partly) } else { "" });
         if self.has(EffectKind::Material) {
-            text.push_str("    var material = Material(as_is((*point).base), (*point).emission, vec3f(0.0), 32.0);\n");
+            text.push_str(MATERIAL_BEGINS);
             text.push_str(&self.statements(EffectKind::Material));
-            text.push_str("    (*point).base = material.base;\n    (*point).emission = vec3f(0.0);\n");
+            text.push_str(MATERIAL_ENDS);
         }
         if self.has(EffectKind::Light) {
             text.push_str("    (*point).arriving = as_is((*point).arriving);\n");
@@ -197,7 +195,7 @@ impl Writer<'_> {
         }
         let highlights = self.has(EffectKind::Material);
         if highlights {
-            text.push_str("    (*point).highlight = as_is(highlights(material, *point));\n");
+            text.push_str(HIGHLIGHTED);
         }
         text.push_str("    var color = vec3f(0.0);\n");
         let own = |kind, mode| self.handlers.iter().find(move |h| h.kind == kind && h.mode == mode);
@@ -211,6 +209,7 @@ impl Writer<'_> {
             }
             text.push_str("    color = before_sky(color, *point);\n");
         }
+        text.push_str(if highlights { HIGHLIGHT_LEFT } else { "" });
         let _ = writeln!(text, "    return styled{suffix}(color, *point, classes);\n}}\n");
         text
     }
@@ -347,6 +346,19 @@ pub(super) fn opacity_end(has_clear_materials: bool, partly: bool) -> String {
     let presence = if partly { " * presence_of_layer(point, classes)" } else { "" };
     format!("    return opacity{material}{presence};\n}}\n")
 }
+
+/// How material effects begin and end, and what they leave of light that does not come out of a colour.
+pub(super) const MATERIAL_BEGINS: &str = "    let own_light = (*point).emission;
+    var material = Material(as_is((*point).base), own_light, vec3f(0.0), 32.0);
+";
+pub(super) const MATERIAL_ENDS: &str = "    (*point).base = material.base;
+    (*point).emission = vec3f(0.0);
+";
+pub(super) const HIGHLIGHTED: &str = "    (*point).highlight = as_is(highlights(material, *point));
+";
+/// A scene style has a colour of its own, to which what effects added belongs, but not the light that the city's materials have.
+pub(super) const HIGHLIGHT_LEFT: &str = "    (*point).highlight = max((*point).highlight - own_light, vec3f(0.0));
+";
 
 /// What keeps compilers from putting the answer of a handler of this kind together with what follows (`lib/point.wgsl`).
 pub(super) fn as_is(kind: EffectKind) -> &'static str {

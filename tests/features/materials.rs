@@ -405,6 +405,28 @@ fn light_of_their_own_is_added_to_what_falls_on_surfaces() {
     }
     let [flat, flat_too] = ["", "\nKe 0 0.6 0.3"].map(|ke| of(&format!("Kd 0.5 0.5 0.5{ke}"), &through("flat")));
     assert_eq!(flat, flat_too);
+    // Whatever else the scene has: an effect on materials elsewhere, or there, of which the light it adds is kept.
+    let elsewhere = format!(
+        "{}[[lens]]\nname = \"b\"\nkind = \"color\"\nbody = \"none\"\neffects = [\"glow\"]\n\
+             shape = {{ kind = \"sphere\", center = [900, 0, 5], radius = 4 }}\n",
+        through("flat")
+    );
+    let there = through("flat").replace(r#"["flat"]"#, "[{ effect = \"glow\", rim = 0, color = \"#004000\" }, \"flat\"]");
+    for (what, more, added) in [("elsewhere", elsewhere, 0.0), ("there", there, 0.55 * linear(0x40))] {
+        let [dark, lamp] = ["", "\nKe 0 0.6 0.3"].map(|ke| of(&format!("Kd 0.5 0.5 0.5{ke}"), &more));
+        assert_eq!(dark, lamp, "{what}");
+        for (k, added) in [0.0, added, 0.0].into_iter().enumerate() {
+            assert!((dark[k] - flat[k] - added).abs() < 0.008, "{what}, {k}: {dark:?}, {flat:?}");
+        }
+    }
+    // A style that is laid over what is below by no weight changes nothing, highlights included.
+    let weightless = through("flat").replace(
+        r#"["flat"]"#,
+        "[{ effect = \"glow\", rim = 0 }, { effect = \"clay\", blend = \"replace\", weight = 0 }]",
+    );
+    let alone = through("flat").replace(r#"["flat"]"#, "[{ effect = \"glow\", rim = 0 }]");
+    let lamp = "Kd 0.5 0.5 0.5\nKe 0 0.6 0.3";
+    assert_eq!(of(lamp, &weightless), of(lamp, &alone));
 }
 
 /// A wall in a texture of one colour, and in a material of that: light, layers and textures agree about what a colour is.
