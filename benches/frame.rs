@@ -155,11 +155,11 @@ const ROWS: [(&str, &str, f64); 30] = [
     ("V2 see-through city", "V2 plain", 10.0),
     ("V2 see-through city", "V2 all", 10.0),
     ("V1 magnifier", "V1 plain", 1.60),
-    ("V2 magnifier", "V2 plain", 1.60),
+    ("V2 magnifier", "V2 plain", 2.50),
     ("V1 magnifier outlined", "V1 plain", 1.60),
-    ("V2 magnifier outlined", "V2 plain", 1.60),
-    ("V1 magnifier by image", "V1 plain", 1.60),
-    ("V2 magnifier by image", "V2 plain", 1.60),
+    ("V2 magnifier outlined", "V2 plain", 2.50),
+    ("V1 magnifier by image", "V1 plain", 2.50),
+    ("V2 magnifier by image", "V2 plain", 4.50),
 ];
 
 /// Frames in which a lens moves, and the same in which it does not.

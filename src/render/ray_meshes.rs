@@ -209,7 +209,7 @@ impl RayMeshes {
     /// What rays are followed through. `placed`: the `City` of each offset, or nothing where all stands where it is.
     pub fn traced(&self, view: &View, placed: &[u8]) -> Vec<TracedCity<'_>> {
         let view_from_world = view.basis.view_from_world();
-        let of = |standing: &Standing| {
+        let of = |(number, standing): (u32, &Standing)| {
             let (mesh, first) = (&self.meshes[standing.mesh], self.begins[standing.mesh]);
             let Stand { own, linear, eye } = standing.stand(view, placed);
             let inverse = linear.inverse();
@@ -233,9 +233,9 @@ impl RayMeshes {
                 world_y,
                 world_z,
             };
-            TracedCity { own, words: &mesh.words, first }
+            TracedCity { own, words: &mesh.words, first, number }
         };
-        self.standing.iter().map(of).collect()
+        (0..).zip(&self.standing).map(of).collect()
     }
 
     /// The triangles of each, as a view has them.

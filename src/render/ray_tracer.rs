@@ -46,6 +46,8 @@ pub struct TracedCity<'a> {
     pub words: &'a [Word],
     /// Where these begin among all.
     pub first: u32,
+    /// Which of the cities it is.
+    pub number: u32,
 }
 
 /// Where pixels of a tile lie in the picture's plane.
@@ -208,7 +210,7 @@ impl Tracer<'_> {
             let lanes = (to.cmpgt(Vec4::splat(from)) & found.t.cmpgt(Vec4::splat(from))).bitmask();
             if lanes != 0 {
                 let stretch = Stretch { lines, from, to, before, overlap };
-                for city in 0..self.cities.len() {
+                for city in self.cities {
                     self.follow_in_city(city, &stretch, lanes, &mut found);
                 }
             }
@@ -221,18 +223,17 @@ impl Tracer<'_> {
     }
 
     /// The same of some lanes in one city.
-    fn follow_in_city(&self, number: usize, stretch: &Stretch, lanes: u32, found: &mut Found) {
-        let city = &self.cities[number];
+    fn follow_in_city(&self, city: &TracedCity, stretch: &Stretch, lanes: u32, found: &mut Found) {
         if city.own.boxes == NO_BOXES {
             return;
         }
         match Lines::new(&city.own, &stretch.lines, lanes) {
-            Some(lines) => first_in_city((number as u32, city), &lines, stretch, lanes, found),
+            Some(lines) => first_in_city(city, &lines, stretch, lanes, found),
             // They go too far apart to be followed together.
             None => (0..LANES as u32)
                 .map(|lane| 1 << lane & lanes)
                 .filter(|lane| *lane != 0)
-                .for_each(|lane| self.follow_in_city(number, stretch, lane, found)),
+                .for_each(|lane| self.follow_in_city(city, stretch, lane, found)),
         }
     }
 }
@@ -399,8 +400,8 @@ fn difference_of_products(p: [Vec4; 2], q: [Vec4; 2], lanes: u32) -> Vec4 {
 }
 
 /// The first that the lines of some lanes meet of a city, nearer than what they found.
-fn first_in_city((number, city): (u32, &TracedCity), lines: &Lines, stretch: &Stretch, lanes: u32, found: &mut Found) {
-    let TracedCity { own, words, first } = city;
+fn first_in_city(city: &TracedCity, lines: &Lines, stretch: &Stretch, lanes: u32, found: &mut Found) {
+    let TracedCity { own, words, first, number } = city;
     let triangles = (own.triangles - first) as usize;
     let active = BVec4A::new(lanes & 1 != 0, lanes & 2 != 0, lanes & 4 != 0, lanes & 8 != 0);
     let begin = stretch.from - stretch.overlap;
@@ -458,7 +459,7 @@ fn first_in_city((number, city): (u32, &TracedCity), lines: &Lines, stretch: &St
                 if is_nearer && !is_met_before(city, stretch, triangle, lane, t) {
                     found.t[lane] = t;
                     found.triangle[lane] = word + 1;
-                    found.city[lane] = number;
+                    found.city[lane] = *number;
                     found.layer[lane] = met.layer;
                     found.weights[lane] = met.weights.map(|w| w[lane]);
                 }
@@ -483,4 +484,137 @@ fn is_met_before(city: &TracedCity, stretch: &Stretch, triangle: usize, lane: us
 /// The greatest of some lanes.
 fn farthest_of(t: Vec4, lanes: u32) -> f32 {
     (0..LANES).filter(|lane| lanes >> lane & 1 != 0).fold(f32::NEG_INFINITY, |most, lane| most.max(t[lane]))
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::geom::{Aabb, bvh::Bvh};
+
+    /// Squares along a side of the terrain, and their width, steps of the grid.
+    const SIDE: usize = 12;
+    const WIDE: i32 = 1 << 14;
+    /// Metres of a step.
+    const STEP: f64 = 1.0 / 1024.0;
+
+    /// A terrain of two triangles a square, and its words: boxes, then corners.
+    struct Terrain {
+        triangles: Vec<[IVec3; 3]>,
+        words: Vec<Word>,
+        first_triangle: u32,
+    }
+
+    impl Terrain {
+        fn new(heights: &[i32]) -> Self {
+            let corner = |x: usize, y: usize| {
+                IVec3::new(x as i32 * WIDE, y as i32 * WIDE, heights[(y * (SIDE + 1) + x) % heights.len()])
+            };
+            let square = |x: usize, y: usize| {
+                let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
+                if (x + y) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+            };
+            let squares = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y)));
+            let triangles: Vec<[IVec3; 3]> = squares.flat_map(|(x, y)| square(x, y)).collect();
+            let around = |t: &[IVec3; 3]| {
+                let own = Aabb::from_points(t.iter().map(|c| c.as_dvec3() * STEP));
+                Aabb { min: own.min - 1e-3, max: own.max + 1e-3 }
+            };
+            let boxes: Vec<Aabb> = triangles.iter().map(around).collect();
+            let (nodes, items) = Bvh::build(&boxes).flat(60, &boxes);
+            let mut words: Vec<Word> = Vec::new();
+            for node in &nodes {
+                let word = |c: [f32; 3], last: u32| [c[0].to_bits(), c[1].to_bits(), c[2].to_bits(), last];
+                words.extend([word(node.min, node.first), word(node.max, node.count)]);
+            }
+            let first_triangle = words.len() as u32;
+            for &item in &items {
+                words.extend(triangles[item as usize].map(|c| [c.x as u32, c.y as u32, c.z as u32, 0]));
+            }
+            Self { triangles, words, first_triangle }
+        }
+
+        fn city(&self, eye: DVec3) -> TracedCity<'_> {
+            let steps = eye / STEP;
+            let own = layout::RayCity {
+                from_view_x: [1.0, 0.0, 0.0, STEP as f32],
+                from_view_y: [0.0, 1.0, 0.0, 0.0],
+                from_view_z: [0.0, 0.0, 1.0, 0.0],
+                eye: steps.round().as_ivec3().to_array(),
+                eye_fraction: (steps - steps.round()).as_vec3().to_array(),
+                eye_in_boxes: eye.as_vec3().to_array(),
+                boxes: 0,
+                triangles: self.first_triangle,
+                ..bytemuck::Zeroable::zeroed()
+            };
+            TracedCity { own, words: &self.words, first: 0, number: 0 }
+        }
+
+        /// Where a line meets it first, in f64, all triangles asked; those that it passes by no more than `slack` of their size count as met.
+        fn first(&self, eye: DVec3, direction: DVec3, slack: f64) -> f64 {
+            let met = |t: &[IVec3; 3]| {
+                let [a, b, c] = t.map(|c| c.as_dvec3() * STEP - eye);
+                let volume = |p: DVec3, q: DVec3| p.cross(q).dot(direction);
+                let [u, v, w] = [volume(b, c), volume(c, a), volume(a, b)];
+                let sum = u + v + w;
+                let is_met = [u, v, w].iter().all(|x| x / sum >= -slack);
+                (is_met && sum != 0.0)
+                    .then(|| (u * a + v * b + w * c).dot(direction) / sum / direction.length_squared())
+            };
+            self.triangles.iter().filter_map(met).filter(|t| *t > 0.0).fold(f64::INFINITY, f64::min)
+        }
+    }
+
+    fn path(direction: DVec3, turns: &[f64]) -> Vec<PathPiece> {
+        let ends = turns.iter().copied().chain([f64::INFINITY]);
+        let begins = std::iter::once(0.0).chain(turns.iter().copied());
+        let line = ViewLine { origin: DVec3::ZERO, direction };
+        begins.zip(ends).map(|(from, to)| PathPiece { range: [from, to], line }).collect()
+    }
+
+    proptest! {
+        #![proptest_config(crate::seeds::config())]
+
+        /// Between triangles nothing leaks, through corners and along edges neither, wherever pieces end; and what is met is where f64 has it.
+        #[test]
+        fn no_ray_falls_through_a_terrain(
+            // Flatter than all rays: none passes beside a ridge.
+            heights in prop::collection::vec(-1000_i32..1000, (SIDE + 1) * (SIDE + 1)),
+            eye in [20.0_f64..170.0, 20.0_f64..170.0, 60.0_f64..300.0],
+            places in prop::collection::vec((1_i32..SIDE as i32, 1_i32..SIDE as i32, 0_u32..4, 0.0_f64..1.0), LANES),
+            turned in 0.1_f64..1.5,
+        ) {
+            let terrain = Terrain::new(&heights);
+            let eye = DVec3::from(eye);
+            let targets: Vec<DVec3> = places.iter().map(|&(x, y, what, share)| {
+                let corner = |x: i32, y: i32| {
+                    let height = heights[(y as usize * (SIDE + 1) + x as usize) % heights.len()];
+                    IVec3::new(x * WIDE, y * WIDE, height).as_dvec3() * STEP
+                };
+                match what {
+                    0 => corner(x, y),
+                    1 => corner(x, y).lerp(corner(x + 1, y), share),
+                    2 => corner(x, y).lerp(corner(x, y - 1), share),
+                    _ => corner(x, y).lerp(corner(x - 1, y - 1), share),
+                }
+            }).collect();
+            let cities = [terrain.city(eye)];
+            let tracer = Tracer { near: 0.5, cities: &cities };
+            // Along the view axis by one metre, so that all turn together; at the first one's target, too.
+            let directions: [DVec3; LANES] = std::array::from_fn(|lane| (targets[lane] - eye) / (eye.z - targets[lane].z));
+            let first = eye.z - targets[0].z;
+            for turns in [vec![], vec![turned * first], vec![first], vec![0.5 * first, first]] {
+                let found = tracer.follow(&directions.map(|direction| path(direction, &turns)));
+                for (lane, direction) in directions.into_iter().enumerate() {
+                    let hit = found.hit(lane);
+                    prop_assert!(hit.triangle > 0, "lane {lane} falls through: {direction} from {eye}, {turns:?}");
+                    let [low, high] = [1e-3, -1e-3].map(|slack| terrain.first(eye, direction, slack));
+                    let t = f64::from(hit.t);
+                    prop_assert!(t >= low * (1.0 - 1e-5) && t <= high * (1.0 + 1e-5), "lane {lane}: {t}, not {low} to {high}");
+                }
+            }
+            prop_assert_eq!(tracer.follow(&std::array::from_fn(|_| path(DVec3::Z, &[]))).hit(0), TracedHit::default(), "above");
+        }
+    }
 }

@@ -411,7 +411,8 @@ fn light_of_their_own_is_added_to_what_falls_on_surfaces() {
              shape = {{ kind = \"sphere\", center = [900, 0, 5], radius = 4 }}\n",
         through("flat")
     );
-    let there = through("flat").replace(r#"["flat"]"#, "[{ effect = \"glow\", rim = 0, color = \"#004000\" }, \"flat\"]");
+    let there =
+        through("flat").replace(r#"["flat"]"#, "[{ effect = \"glow\", rim = 0, color = \"#004000\" }, \"flat\"]");
     for (what, more, added) in [("elsewhere", elsewhere, 0.0), ("there", there, 0.55 * linear(0x40))] {
         let [dark, lamp] = ["", "\nKe 0 0.6 0.3"].map(|ke| of(&format!("Kd 0.5 0.5 0.5{ke}"), &more));
         assert_eq!(dark, lamp, "{what}");
