@@ -576,6 +576,19 @@ mod tests {
     proptest! {
         #![proptest_config(crate::seeds::config())]
 
+        /// The sign is that of the numbers, however near products are to each other, and the same the other way round.
+        #[test]
+        fn signs_of_differences_are_exact(a in 1_i64..1 << 24, b in 1_i64..1 << 24, by in -2_i64..3, aside in -2_i64..3, lane in 0..LANES) {
+            // Whole numbers of 24 bits are f32, and beside each other: (a + by)(b + aside) is near ab.
+            let [c, d] = [(a + by).clamp(1, 1 << 24), (b + aside).clamp(1, 1 << 24)];
+            let lanes = |x: i64| Vec4::splat(x as f32);
+            let sign = (a * b - c * d).signum() as f32;
+            let [one, other] = [[[a, b], [c, d]], [[c, d], [a, b]]].map(|[p, q]| {
+                difference_of_products(p.map(lanes), q.map(lanes), 1 << lane)[lane]
+            });
+            prop_assert_eq!([one, other].map(|x| if x == 0.0 { 0.0 } else { x.signum() }), [sign, -sign]);
+        }
+
         /// Between triangles nothing leaks, through corners and along edges neither, wherever pieces end; and what is met is where f64 has it.
         #[test]
         fn no_ray_falls_through_a_terrain(
