@@ -315,14 +315,15 @@ fn ray_at_distance(pixel: vec2f, distance: f32) -> Ray {
     return bent_ray(across_of_pixel(pixel), select(FAR_AWAY, distance, distance > 0.0));
 }
 
-// From which distance on, beyond this one, it lies on another line.
-fn line_ends(distance: f32) -> f32 {
+// From which distance on, beyond this one, the ray of a pixel may lie on another line.
+fn line_ends(pixel: vec2f, distance: f32) -> f32 {
     var end = FAR_AWAY;
+    let may_turn = is_bent(pixel);
     for (var i = 0u; i < 2u * RAY_PLANES; i++) {
         let event = ray_event(i);
         let plane = select(event.lens - RAY_IMAGES, 0u, RAY_PLANES == 1u);
-        let is_bent = ray_lens(RAY_IMAGES + plane).power != 0.0;
-        end = select(end, min(end, event.distance), is_bent && event.distance > distance);
+        let has_power = ray_lens(RAY_IMAGES + plane).power != 0.0;
+        end = select(end, min(end, event.distance), may_turn && has_power && event.distance > distance);
     }
     return end;
 }

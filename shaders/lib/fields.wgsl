@@ -477,7 +477,7 @@ fn lay_fields(pixel: vec2i, middle: vec2f, until: f32, part: u32, laid: ptr<func
     // Fields are no objects.
     see_object(NO_OBJECT);
     while fields_until < until && (*laid).w >= LEAST_THROUGH {
-        var next = min(until, line_ends(fields_until));
+        var next = min(until, line_ends(middle, fields_until));
         var nearest = 4u;
         for (var i = 0u; FIELDS_PROJECTED && i < fields.count; i++) {
             if projected[i].z > 0.0 && projected[i].x < next {
@@ -534,7 +534,7 @@ fn found_of_field(number: u32, pixel: vec2i, middle: vec2f, opaque: f32, part: u
     var at = view.near;
     var rounds = 0u;
     while at < opaque && rounds < 32u {
-        let ends = min(opaque, line_ends(at));
+        let ends = min(opaque, line_ends(middle, at));
         see_pixel(middle, 0.5 * (at + min(ends, 2.0 * at + 1e6)));
         let ray = ray_of_pixel(middle);
         let metres = length(ray.direction);

@@ -316,7 +316,7 @@ impl Lines {
 
     /// A place of the grid, metres from the eye.
     #[inline]
-    fn from_eye(&self, word: &Word) -> Vec3 {
+    fn beside_eye(&self, word: &Word) -> Vec3 {
         let steps = IVec3::new(word[0] as i32, word[1] as i32, word[2] as i32) - self.eye;
         (steps.as_vec3() - self.eye_fraction) * self.step
     }
@@ -324,7 +324,7 @@ impl Lines {
     /// A corner relative to where the lines begin, sheared along them.
     #[inline]
     fn sheared(&self, word: &Word) -> [Vec4; 3] {
-        let place = self.from_eye(word).to_array();
+        let place = self.beside_eye(word).to_array();
         let [i, j, k] = self.axes;
         let along = Vec4::splat(place[k]) - self.origin[k];
         let [x, y] = [Vec4::splat(place[i]) - self.origin[i], Vec4::splat(place[j]) - self.origin[j]];
@@ -357,7 +357,7 @@ impl Lines {
 
     /// Faces of one plane are equally far, to the bit; `t`: where a line goes along the plane.
     fn to_plane(&self, rest: &[Word], t: Vec4) -> Vec4 {
-        let place = self.from_eye(&rest[1]);
+        let place = self.beside_eye(&rest[1]);
         let normal = [0, 1, 2].map(|k| f32::from_bits(rest[0][k]));
         let dot = |v: [Vec4; 3]| normal[0] * v[0] + normal[1] * v[1] + normal[2] * v[2];
         let slope = dot(self.direction);
@@ -513,7 +513,7 @@ mod tests {
             };
             let square = |x: usize, y: usize| {
                 let [a, b, c, d] = [corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)];
-                if (x + y) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+                if (x + y).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
             };
             let squares = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y)));
             let triangles: Vec<[IVec3; 3]> = squares.flat_map(|(x, y)| square(x, y)).collect();
