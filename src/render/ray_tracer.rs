@@ -102,16 +102,23 @@ impl TracedFigures {
     }
 }
 
-/// What the rays of pixels meet that lie in lenses whose rays are followed, row by row of a part of the tile, of others nothing; and how many rays these are.
-pub fn trace(paths: &RayPaths, view: &TracedView, cities: &[TracedCity], part: PictureTile) -> (Vec<TracedHit>, u64) {
+/// What the rays of pixels meet that lie in lenses whose rays are followed, row by row of a part of the tile, of others nothing; and how many rays these are. Of each the
+/// `most` that it meets first, the nearest first, 1 to [`MOST_HITS`].
+pub fn trace(
+    paths: &RayPaths,
+    view: &TracedView,
+    cities: &[TracedCity],
+    part: PictureTile,
+    most: usize,
+) -> (Vec<TracedHit>, u64) {
     let [width, height] = part.size.map(|n| n as usize);
-    let mut hits = vec![TracedHit::default(); width * height];
+    let mut hits = vec![TracedHit::default(); most * width * height];
     let followed = AtomicU64::new(0);
     let rims: Vec<&Rim> = paths.rims().filter(|rim| rim.method == RayMethod::Rays).collect();
     let is_bent = |across: DVec2| rims.iter().any(|rim| is_within(rim, across, view.pixel()));
     let corner = DVec2::new(part.origin[0].into(), part.origin[1].into()) + 0.5;
     let tracer = Tracer { near: view.near, cities };
-    let rows = hits.par_chunks_mut((2 * width).max(1)).enumerate();
+    let rows = hits.par_chunks_mut((2 * most * width).max(1)).enumerate();
     rows.for_each_init(
         || (RayWalk::new(paths), <[Vec<PathPiece>; LANES]>::default()),
         |(walk, pieces), (pair, hits)| {
@@ -129,9 +136,10 @@ pub fn trace(paths: &RayPaths, view: &TracedView, cities: &[TracedCity], part: P
                     own.clear();
                     place.into_iter().for_each(|place| own.extend_from_slice(walk.pieces(place)));
                 }
-                let found = tracer.follow(pieces);
+                let found = tracer.follow(pieces, most);
                 for (lane, _) in places.iter().enumerate().filter(|(_, place)| place.is_some()) {
-                    hits[lane / 2 * width + x + lane % 2] = found.hit(lane);
+                    let pixel = lane / 2 * width + x + lane % 2;
+                    hits[most * pixel..most * (pixel + 1)].copy_from_slice(found.of_lane(lane));
                 }
             }
         },
@@ -155,31 +163,57 @@ struct Tracer<'a> {
     cities: &'a [TracedCity<'a>],
 }
 
-/// The nearest that four rays met so far.
+/// Hits of a ray that are told, at most.
+pub const MOST_HITS: usize = 4;
+
+/// The nearest that four rays met so far, so many of each.
 struct Found {
-    t: Vec4,
-    triangle: [u32; LANES],
-    city: [u32; LANES],
-    layer: [u32; LANES],
-    weights: [[f32; 2]; LANES],
+    most: usize,
+    hits: [[TracedHit; MOST_HITS]; LANES],
+    /// Which layer of its plane each is of.
+    layers: [[u32; MOST_HITS]; LANES],
+    counts: [usize; LANES],
+    /// How far more are looked for.
+    reach: Vec4,
 }
 
 impl Found {
-    fn nothing() -> Self {
+    fn nothing(most: usize) -> Self {
         Self {
-            t: Vec4::splat(FAR_AWAY),
-            triangle: [0; LANES],
-            city: [0; LANES],
-            layer: [0; LANES],
-            weights: [[0.0; 2]; LANES],
+            most: most.min(MOST_HITS),
+            hits: [[TracedHit::default(); MOST_HITS]; LANES],
+            layers: [[0; MOST_HITS]; LANES],
+            counts: [0; LANES],
+            reach: Vec4::splat(FAR_AWAY),
         }
     }
 
-    fn hit(&self, lane: usize) -> TracedHit {
-        if self.triangle[lane] == 0 {
-            return TracedHit::default();
+    /// Takes a hit of a ray, if it is one of the nearest; of two that are as far that comes first which lies over the other.
+    fn take(&mut self, lane: usize, hit: TracedHit, layer: u32) {
+        let (hits, layers) = (&mut self.hits[lane], &mut self.layers[lane]);
+        let count = self.counts[lane];
+        let is_after = |i: &usize| {
+            let first = &hits[*i];
+            let lies_over = (layer, first.triangle) > (layers[*i], hit.triangle);
+            hit.t > first.t || (hit.t == first.t && !lies_over)
+        };
+        let place = (0..count).take_while(is_after).count();
+        if place == self.most {
+            return;
         }
-        TracedHit { t: self.t[lane], triangle: self.triangle[lane], city: self.city[lane], weights: self.weights[lane] }
+        let count = (count + 1).min(self.most);
+        hits[place..count].rotate_right(1);
+        layers[place..count].rotate_right(1);
+        (hits[place], layers[place]) = (hit, layer);
+        self.counts[lane] = count;
+        if count == self.most {
+            self.reach[lane] = hits[count - 1].t;
+        }
+    }
+
+    /// What a ray met, the nearest first; those behind the last are of no triangle.
+    fn of_lane(&self, lane: usize) -> &[TracedHit] {
+        &self.hits[lane][..self.most]
     }
 }
 
@@ -194,9 +228,9 @@ struct Stretch {
 }
 
 impl Tracer<'_> {
-    /// What four rays meet first, of each the pieces of its path.
-    fn follow(&self, paths: &[Vec<PathPiece>; LANES]) -> Found {
-        let mut found = Found::nothing();
+    /// The `most` that four rays meet first, of each the pieces of its path.
+    fn follow(&self, paths: &[Vec<PathPiece>; LANES], most: usize) -> Found {
+        let mut found = Found::nothing(most);
         let mut before = None;
         let (mut from, mut overlap) = (self.near, 0.0);
         let count = paths.iter().map(Vec::len).max().unwrap_or(0);
@@ -207,7 +241,7 @@ impl Tracer<'_> {
             let to = Vec4::from_array(paths.each_ref().map(ends));
             let line = |path: &Vec<PathPiece>| path.get(i).map_or(STILL, |piece| piece.line);
             let lines = paths.each_ref().map(line);
-            let lanes = (to.cmpgt(Vec4::splat(from)) & found.t.cmpgt(Vec4::splat(from))).bitmask();
+            let lanes = (to.cmpgt(Vec4::splat(from)) & found.reach.cmpgt(Vec4::splat(from))).bitmask();
             if lanes != 0 {
                 let stretch = Stretch { lines, from, to, before, overlap };
                 for city in self.cities {
@@ -410,7 +444,7 @@ fn first_in_city(city: &TracedCity, lines: &Lines, stretch: &Stretch, lanes: u32
     let mut stack = [(0_u32, 0.0_f32); 64];
     let mut height = 1;
     stack[0] = (own.boxes - first, f32::NEG_INFINITY);
-    let mut until = to.min(found.t);
+    let mut until = to.min(found.reach);
     let mut reach = (1.0 + BOX_SLACK) * until;
     let mut farthest = farthest_of(reach, lanes);
     while height > 0 {
@@ -453,18 +487,13 @@ fn first_in_city(city: &TracedCity, lines: &Lines, stretch: &Stretch, lanes: u32
                 let lane = rest.trailing_zeros() as usize;
                 rest &= rest - 1;
                 let t = met.t[lane];
-                let word = first + triangle as u32;
-                let lies_over = (met.layer, found.triangle[lane]) > (found.layer[lane], word + 1);
-                let is_nearer = t < found.t[lane] || (t < FAR_AWAY && lies_over);
-                if is_nearer && !is_met_before(city, stretch, triangle, lane, t) {
-                    found.t[lane] = t;
-                    found.triangle[lane] = word + 1;
-                    found.city[lane] = *number;
-                    found.layer[lane] = met.layer;
-                    found.weights[lane] = met.weights.map(|w| w[lane]);
+                if t < FAR_AWAY && !is_met_before(city, stretch, triangle, lane, t) {
+                    let weights = met.weights.map(|w| w[lane]);
+                    let hit = TracedHit { t, triangle: first + triangle as u32 + 1, city: *number, weights };
+                    found.take(lane, hit, met.layer);
                 }
             }
-            until = to.min(found.t);
+            until = to.min(found.reach);
             reach = (1.0 + BOX_SLACK) * until;
             farthest = farthest_of(reach, lanes);
         }
@@ -618,16 +647,16 @@ mod tests {
             let directions: [DVec3; LANES] = std::array::from_fn(|lane| (targets[lane] - eye) / (eye.z - targets[lane].z));
             let first = eye.z - targets[0].z;
             for turns in [vec![], vec![turned * first], vec![first], vec![0.5 * first, first]] {
-                let found = tracer.follow(&directions.map(|direction| path(direction, &turns)));
+                let found = tracer.follow(&directions.map(|direction| path(direction, &turns)), 1);
                 for (lane, direction) in directions.into_iter().enumerate() {
-                    let hit = found.hit(lane);
+                    let hit = found.of_lane(lane)[0];
                     prop_assert!(hit.triangle > 0, "lane {lane} falls through: {direction} from {eye}, {turns:?}");
                     let [low, high] = [1e-3, -1e-3].map(|slack| terrain.first(eye, direction, slack));
                     let t = f64::from(hit.t);
                     prop_assert!(t >= low * (1.0 - 1e-5) && t <= high * (1.0 + 1e-5), "lane {lane}: {t}, not {low} to {high}");
                 }
             }
-            prop_assert_eq!(tracer.follow(&std::array::from_fn(|_| path(DVec3::Z, &[]))).hit(0), TracedHit::default(), "above");
+            prop_assert_eq!(tracer.follow(&std::array::from_fn(|_| path(DVec3::Z, &[])), 1).of_lane(0)[0], TracedHit::default(), "above");
         }
     }
 }

@@ -7,8 +7,8 @@ use crate::render::light::SHADOW_SIZE;
 pub struct Settings {
     /// Whether chunks that nearer ones hide are left out where that pays: on software adapters.
     pub culls_hidden: bool,
-    /// Whether the processor follows rays that lenses bend, where nothing hides parts of the city from them: on software adapters, which follow them
-    /// more slowly.
+    /// Whether the processor follows rays that lenses bend to what is opaque, where all lenses bend all rays in known ways and nothing is seen through: on
+    /// software adapters, which follow them more slowly.
     pub traces_rays: bool,
     /// Whether the city is not drawn again where only lenses move that hide nothing of it. Where frames are measured it is drawn in each.
     pub holds_geometry: bool,

@@ -36,18 +36,58 @@ pub(super) const FOLLOWED: &str = "fn found_by_pixel(at: vec2f) -> Hit {
 }
 ";
 
-/// The same where it was followed on the processor (`render::ray_tracer`): of each pixel of a part of the tile five words.
-pub(super) const TRACED: &str = "@group(3) @binding(2) var<storage, read> traced_hits: array<u32>;
+/// The same where it was followed on the processor (`render::ray_tracer`): of each pixel of a part of the tile what it met first, the nearest first, five
+/// words each.
+const TRACED: &str = "@group(3) @binding(2) var<storage, read> traced_hits: array<u32>;
 
-fn found_by_pixel(at: vec2f) -> Hit {
+fn traced_hit(at: vec2f, number: u32) -> Hit {
     let place = vec2u(at) - vec2u(traced_hits[0], traced_hits[1]);
-    let first = 4u + 5u * (place.y * traced_hits[2] + place.x);
+    let pixel = place.y * traced_hits[2] + place.x;
+    let first = 4u + 5u * (pixel * traced_hits[3] + number);
     let triangle = traced_hits[first + 1u];
     let weights = vec2f(bitcast<f32>(traced_hits[first + 3u]), bitcast<f32>(traced_hits[first + 4u]));
     let t = select(FAR_AWAY, bitcast<f32>(traced_hits[first]), triangle > 0u);
     return Hit(t, max(triangle, 1u) - 1u, traced_hits[first + 2u], weights);
 }
 ";
+
+/// What is there of it, where nothing is hidden,
+const TRACED_FIRST: &str = "
+fn found_by_pixel(at: vec2f) -> Hit {
+    return traced_hit(at, 0u);
+}
+";
+
+/// and where something is: where all that was told is hidden it is followed here, too.
+const TRACED_THERE: &str = "
+fn found_by_pixel(at: vec2f) -> Hit {
+    var found = NO_HIT;
+    var goes_on = true;
+    for (var number = 0u; number < traced_hits[3] && goes_on; number++) {
+        let hit = traced_hit(at, number);
+        let is_hit = hit.t < FAR_AWAY;
+        begin_city(hit.city);
+        see_pixel(at, hit.t);
+        goes_on = false;
+        if is_hit {
+            if is_there(seen_ray, at, hit) {
+                found = hit;
+            } else {
+                goes_on = true;
+            }
+        }
+    }
+    if goes_on {
+        found = first_of_pixel(at, NO_HIT);
+    }
+    return found;
+}
+";
+
+/// What was traced; whether something is hidden.
+pub(super) fn traced(is_hidden: bool) -> String {
+    TRACED.to_owned() + if is_hidden { TRACED_THERE } else { TRACED_FIRST }
+}
 
 /// What rays are followed through, in the last group.
 pub(super) const LAST_GROUP: &str = "@group(3) @binding(0) var<uniform> ray_cities: RayCities;

@@ -49,8 +49,8 @@ pub enum Module {
     CombinedSprite(Vec<Form>),
     /// Bent rays, followed through the city, what is hidden, and how many lenses bend them.
     Rays(Option<Program>, Bends),
-    /// What bent rays meet that were followed on the processor, and how many lenses bend them.
-    TracedRays(Bends),
+    /// What bent rays meet that were followed on the processor, what is hidden, and how many lenses bend them.
+    TracedRays(Option<Program>, Bends),
     /// Images of what they meet.
     RayImages(Bends),
     /// Corners where lenses show them, what is hidden, and how many lenses bend rays.
@@ -188,7 +188,7 @@ impl Module {
                 text.fill("handlers", own.unwrap_or_default())
             }
             Self::Rays(..)
-            | Self::TracedRays(_)
+            | Self::TracedRays(..)
             | Self::RayVertices(..)
             | Self::RayWarp(_)
             | Self::RayImages(_)
@@ -207,19 +207,18 @@ impl Module {
     /// The text of a module of bent rays; `hidden`: what is hidden from an eye.
     fn rays_filled<'a>(&self, text: Template<'a>, hidden: &dyn Fn(&Program, Eye) -> String) -> Template<'a> {
         match self {
-            Self::Rays(program, _) | Self::RayVertices(program, _) => {
+            Self::Rays(program, _) | Self::TracedRays(program, _) | Self::RayVertices(program, _) => {
                 let asked = program.as_ref().map(|p| (hidden(p, Eye::Rays), p.has().has_cities()));
                 let followed = text
                     .fill("handlers", followed::source(asked))
                     .fill("met", followed::FIRST)
                     .fill("bindings", followed::LAST_GROUP);
-                if matches!(self, Self::Rays(..)) { followed.fill("found", followed::FOLLOWED) } else { followed }
+                match self {
+                    Self::Rays(..) => followed.fill("found", followed::FOLLOWED),
+                    Self::TracedRays(..) => followed.fill("found", followed::traced(program.is_some())),
+                    _ => followed,
+                }
             }
-            Self::TracedRays(_) => text
-                .fill("handlers", followed::source(None))
-                .fill("met", followed::FIRST)
-                .fill("bindings", followed::LAST_GROUP)
-                .fill("found", followed::TRACED),
             Self::RayWarp(bends) => {
                 const FIRST: u32 = 5;
                 let own = carried::of_lens(*bends, FIRST);
@@ -250,7 +249,7 @@ impl Module {
             | Self::RayLayers(program)
             | Self::Lines(program) => program.has().bends,
             Self::Rays(_, bends)
-            | Self::TracedRays(bends)
+            | Self::TracedRays(_, bends)
             | Self::RayVertices(_, bends)
             | Self::RayImages(bends)
             | Self::RayWarp(bends) => *bends,
@@ -282,10 +281,12 @@ impl Module {
             Self::RayVertices(Some(program), _) => {
                 return files::of_city(program, &[FACADE, RAY_WALK, RAY_VERTICES]);
             }
-            Self::Rays(None, _) | Self::TracedRays(_) => {
+            Self::Rays(None, _) | Self::TracedRays(None, _) => {
                 &[VIEW, VIEW_UNIFORM, SURFACE, ONE_CITY, FACADE, RAY_WALK, RAYS]
             }
-            Self::Rays(Some(program), _) => return files::of_city(program, &[FACADE, RAY_WALK, RAYS]),
+            Self::Rays(Some(program), _) | Self::TracedRays(Some(program), _) => {
+                return files::of_city(program, &[FACADE, RAY_WALK, RAYS]);
+            }
             Self::Geometry(Some(program)) => return files::of_city(program, &[CUT, FACADE, GEOMETRY]),
             Self::Shadow(None) => &[VIEW, VIEW_UNIFORM, SURFACE, HOLE, SHADOW],
             Self::Shadow(Some(program)) => return files::of_city(program, &[HOLE, SHADOW_CUT]),

@@ -15,7 +15,7 @@ impl Module {
             Self::SpriteList => "crossings of a sprite".to_owned(),
             Self::CombinedSprite(_) => "sprite of a combination".to_owned(),
             Self::Rays(hidden, _) => format!("rays{}", hidden_name(hidden.as_ref())),
-            Self::TracedRays(_) => "traced rays".to_owned(),
+            Self::TracedRays(hidden, _) => format!("traced rays{}", hidden_name(hidden.as_ref())),
             Self::RayVertices(hidden, _) => format!("moved corners{}", hidden_name(hidden.as_ref())),
             Self::RayWarp(_) => "looks into images".to_owned(),
             Self::RayImages(_) => "images of rays".to_owned(),

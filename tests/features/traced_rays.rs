@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 use veduta::{
-    lens::{Lens, ray::RayLens},
+    geom::Shape,
+    lens::{Lens, chosen::Choice, ray::RayLens},
     render::picture::{Picture, Request, Studio},
     scene::{CitySpec, Scene, Style},
     time::{Interval, Moment},
@@ -118,8 +119,7 @@ fn the_processor_sees_what_the_gpu_does() {
                 let pictures = both(&mut place.studio, &scene, 1);
                 let [traced, followed] = pictures.each_ref().map(|picture| picture.statistics.frame.traced);
                 assert!(followed.is_none(), "{}: the processor follows none", place.name);
-                assert_eq!(traced.is_some(), place.at.is_none(), "{}: where all stands still", place.name);
-                let rays = traced.map_or(0, |traced| traced.rays);
+                let rays = traced.unwrap_or_else(|| panic!("{}, {c}, {g}: it follows some", place.name)).rays;
                 let off = others(&pictures);
                 assert!(off <= 5, "{}, eye {c}, lenses {g}: {off} pixels differ", place.name);
                 (compared, wrong) = (compared + rays as usize, wrong + off);
@@ -149,17 +149,31 @@ fn rays_are_counted_where_they_are_followed() {
     }
 }
 
-/// Where something hides parts of the city, or a lens acts on some of it alone, the GPU follows them, and says the same.
+/// Where something hides parts of the city, the GPU is asked which of the first hits are there, and follows rays that have others.
 #[test]
-fn what_the_processor_cannot_tell_the_gpu_does() {
+fn what_is_hidden_is_looked_through_by_both() {
     let mut studio = synthetic(20);
     let [camera, _] = cameras(&studio);
     let middle = studio.extent().center();
     let glass = lens(veduta::lens::kind::Magnifier { ray: magnify(2.0, 60.0, 60.0, 0.4) });
-    let gone = crate::studio::lens("gone", [veduta::geom::Shape::Sphere { center: middle, radius: 25.0 }], "eraser");
-    for (lenses, traces) in [(vec![glass.clone()], true), (vec![glass, gone], false)] {
+    let around = |radius: f64| [Shape::Sphere { center: middle, radius }];
+    let plain = both(&mut studio, &scene(camera, vec![glass.clone()]), 1);
+    // Of a house there are four faces at most along a ray, and many houses in the larger one.
+    for (radius, effect) in [(60.0, "eraser"), (120.0, "eraser"), (400.0, "eraser"), (90.0, "wireframe")] {
+        let hidden = crate::studio::lens("hidden", around(radius), effect);
+        let pictures = both(&mut studio, &scene(camera, vec![glass.clone(), hidden]), 1);
+        assert!(pictures[0].statistics.frame.traced.is_some(), "{effect}");
+        let off = others(&pictures);
+        assert!(off <= 1, "{effect} in {radius} m: {off} pixels differ");
+        assert!(others(&[pictures[0].clone(), plain[0].clone()]) > 100, "{effect} in {radius} m hides something");
+    }
+    // Rays of lenses that act on some objects alone are the GPU's, and so are all where it follows them to layers: both are as far, to the bit.
+    let ids = studio.model.objects.iter().step_by(3).map(|object| object.id.to_string()).collect();
+    let mut choosing = glass.clone();
+    choosing.kind.ray_mut().expect("a lens that bends rays").only = Some(Choice { ids, ..Choice::default() });
+    let clear = crate::studio::lens("clear", around(90.0), "peel");
+    for lenses in [vec![choosing], vec![glass, clear]] {
         let pictures = both(&mut studio, &scene(camera, lenses), 1);
-        assert_eq!(pictures[0].statistics.frame.traced.is_some(), traces);
-        assert!(others(&pictures) <= 1);
+        assert!(pictures[0].statistics.frame.traced.is_none() && pictures[0].rgba == pictures[1].rgba);
     }
 }

@@ -18,7 +18,7 @@ use crate::{
         plan::FramePlan,
         programs::Programs,
         ray_meshes::RayMeshes,
-        ray_tracer::{TracedFigures, TracedView, trace},
+        ray_tracer::{MOST_HITS, TracedFigures, TracedView, trace},
         ray_vertices::pieces,
         resource::{
             bindings::{DEPTHS, DRAWN, GroupLayout, NUMBERS, STORAGE, UNIFORM, all_of, group, whole},
@@ -44,7 +44,7 @@ static TRACED: GroupLayout = GroupLayout {
     entries: &[(0, DRAWN, UNIFORM), (1, DRAWN, STORAGE), (2, S::FRAGMENT, STORAGE)],
 };
 
-/// Pixels that the processor traces at a time, at most: five words each are what any adapter binds.
+/// Hits that the processor tells at a time, at most: five words each are what any adapter binds.
 const MOST_TRACED: u64 = 6_000_000;
 
 /// What is drawn of lenses that bend rays.
@@ -94,7 +94,7 @@ impl RayKey {
     fn module(&self) -> Module {
         match self.step {
             Step::Follow => Module::Rays(self.hidden.clone(), self.bends),
-            Step::Trace => Module::TracedRays(self.bends),
+            Step::Trace => Module::TracedRays(self.hidden.clone(), self.bends),
             Step::Clear | Step::Move => Module::RayVertices(self.hidden.clone(), self.bends),
         }
     }
@@ -269,12 +269,19 @@ fn group_of(stage: &Preparing, meshes: &RayMeshes, cities: &Synced) -> wgpu::Bin
     group(stage.gpu, RAYS.label, &stage.pipelines.layout(&RAYS), &entries)
 }
 
+/// How many hits of a ray the processor tells: where something is hidden those behind the first ones may be seen.
+fn hits_of(plan: &FramePlan) -> usize {
+    if plan.cuts.picture.is_some() { MOST_HITS } else { 1 }
+}
+
 /// Whether the processor traces what lies in a part.
 fn is_traced(plan: &FramePlan, part: PictureTile) -> bool {
     let bends = plan.input.operations.bends;
     let pixels = u64::from(part.size[0]) * u64::from(part.size[1]);
-    let is_plain = plan.cuts.picture.is_none() && bends.choosing == 0 && bends.own == [0; MOST_RAY_LENSES];
-    plan.settings.traces_rays && is_plain && pixels <= MOST_TRACED
+    let is_plain = bends.choosing == 0 && bends.own == [0; MOST_RAY_LENSES];
+    // Layers that lie in what is opaque are as far, to the bit, where both are found in one way.
+    let has_layers = plan.plans.layering.is_some();
+    plan.settings.traces_rays && is_plain && !has_layers && pixels * hits_of(plan) as u64 <= MOST_TRACED
 }
 
 /// Whether some of what is drawn has images, storeys and windows left out.
@@ -416,9 +423,10 @@ impl Pass for Rays {
             let view = plan.view_uniform();
             let view = TracedView { across_from_pixel: view.across_from_pixel, near: view.near };
             let started = Instant::now();
-            let (hits, rays) = trace(plan.input.rays, &view, &cities, part);
+            let most = hits_of(plan);
+            let (hits, rays) = trace(plan.input.rays, &view, &cities, part, most);
             self.figures = TracedFigures { rays, ms: started.elapsed().as_secs_f64() * 1e3 };
-            let mut words = vec![part.origin[0], part.origin[1], part.size[0], 0];
+            let mut words = vec![part.origin[0], part.origin[1], part.size[0], most as u32];
             words.extend_from_slice(bytemuck::cast_slice(&hits));
             is_stale |= kept.traced.sync(gpu, &words)?;
             if is_stale || kept.traced_group.is_none() {
