@@ -26,6 +26,7 @@ pub mod gpu;
 pub mod lens;
 pub mod measure;
 pub mod overlay;
+pub mod query;
 pub mod render;
 pub mod scene;
 pub mod shader;

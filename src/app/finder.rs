@@ -5,6 +5,7 @@ use std::cmp::Ordering;
 use crate::{
     city::{CityModel, Value},
     lens::nearest::did_you_mean,
+    query::{self, Bound, Expression, Name, Relation},
 };
 
 /// Finds at most so many.
@@ -13,7 +14,7 @@ const MOST_FOUND: usize = 200;
 /// A search, and what it found last.
 #[derive(Debug, Default)]
 pub struct Finder {
-    /// The text to search for: a part of an id, a type or a value, or an attribute, a relation and a value.
+    /// The text to search for: a part of an id, a type or a value, or an expression ([`crate::query`]).
     pub text: String,
     found: Option<(String, Found)>,
     /// Whether the field is to be written into.
@@ -50,107 +51,93 @@ impl Finder {
     }
 }
 
-/// The relation that a value is to have to the one that is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Relation {
-    Equal,
-    Less,
-    AtMost,
-    More,
-    AtLeast,
-}
-
-impl Relation {
-    fn holds(self, order: Ordering) -> bool {
-        match self {
-            Relation::Equal => order.is_eq(),
-            Relation::Less => order.is_lt(),
-            Relation::AtMost => order.is_le(),
-            Relation::More => order.is_gt(),
-            Relation::AtLeast => order.is_ge(),
-        }
-    }
-}
-
-/// `name=value`, `name>value` and the like: the name, the relation and the value, without blanks around them.
-fn parts(text: &str) -> Option<(&str, Relation, &str)> {
-    let at = text.find(['=', '<', '>'])?;
-    let (name, rest) = text.split_at(at);
-    let (relation, length) = match rest.as_bytes() {
-        [b'<', b'=', ..] => (Relation::AtMost, 2),
-        [b'>', b'=', ..] => (Relation::AtLeast, 2),
-        [b'<', ..] => (Relation::Less, 1),
-        [b'>', ..] => (Relation::More, 1),
-        _ => (Relation::Equal, 1),
+/// `name=`, `name>` and the like, as it is being typed: the name and the relation.
+fn unfinished(text: &str) -> Option<(&str, Relation)> {
+    let name = text.trim_end_matches(['=', '<', '>', '!', ' ']);
+    let relation = match text[name.len()..].trim() {
+        "<=" => Relation::AtMost,
+        ">=" => Relation::AtLeast,
+        "<" => Relation::Less,
+        ">" => Relation::More,
+        "=" => Relation::Equal,
+        _ => return None,
     };
-    let name = name.trim();
-    (!name.is_empty()).then(|| (name, relation, rest[length..].trim()))
-}
-
-/// The order of two values: as numbers where the second is one (what is neither a number nor a day of some year
-/// then stands in no order to it), else as texts, so that days have their order.
-fn order(value: &str, wanted: &str) -> Option<Ordering> {
-    let Ok(number) = wanted.parse::<f64>() else { return Some(value.cmp(wanted)) };
-    match value.parse::<f64>() {
-        Ok(value) => value.partial_cmp(&number),
-        Err(_) => year_of(value)?.partial_cmp(&number),
-    }
-}
-
-/// The year of a day that is written as `1899-03-01`.
-fn year_of(day: &str) -> Option<f64> {
-    let (year, _) = day.split_once('-')?;
-    (year.len() == 4 && year.bytes().all(|b| b.is_ascii_digit())).then(|| year.parse().ok()).flatten()
+    let is_name = !name.is_empty() && !name.contains(['=', '<', '>', '(', ')', '"', '\'']);
+    is_name.then_some((name, relation))
 }
 
 fn find(text: &str, model: &CityModel, attributes: &[String]) -> Found {
     let typed = text.trim();
-    let text = typed.to_lowercase();
-    let all = 0..model.objects.len() as u32;
-    if text.is_empty() {
+    if typed.is_empty() {
         return Found::default();
     }
-    let Some((name, relation, wanted)) = parts(&text) else {
-        let objects: Vec<_> = all.filter(|&object| has(model, object, &text)).map(|object| (object, None)).collect();
-        let named = attributes.iter().find(|name| name.to_lowercase().contains(&text));
-        let why_none = named.map_or_else(
-            || "Nothing found.".to_owned(),
-            |name| format!("\"{name}\" is an attribute: {name}> finds all that have it, {name}>5 and {name}=5 some."),
-        );
-        return Found::of(objects, why_none);
+    if let Some((name, relation)) = unfinished(typed) {
+        let has = Expression::Has(Name { text: name.trim_matches('`').to_owned(), column: 1 });
+        return found_by(&has, relation, model, attributes);
+    }
+    match query::parse(typed) {
+        // Words alone are looked for everywhere.
+        Ok(Expression::Has(_)) => found_anywhere(typed, model, attributes),
+        Ok(Expression::Is(name, relation, literal)) => {
+            found_by(&Expression::Is(name, relation, literal), relation, model, attributes)
+        }
+        Ok(expression) => found_by(&expression, Relation::Equal, model, attributes),
+        Err(error) if says_relations(typed) => Found { why_none: format!("{error}."), ..Found::default() },
+        Err(_) => found_anywhere(typed, model, attributes),
+    }
+}
+
+/// Whether a text that is no expression was meant to be one.
+fn says_relations(text: &str) -> bool {
+    text.contains(['=', '<', '>', '`']) || text.contains("..")
+}
+
+/// The objects that have a text in their ids, types or values.
+fn found_anywhere(text: &str, model: &CityModel, attributes: &[String]) -> Found {
+    let text = text.to_lowercase();
+    let all = 0..model.objects.len() as u32;
+    let objects: Vec<_> = all.filter(|&object| has(model, object, &text)).map(|object| (object, None)).collect();
+    let named = attributes.iter().find(|name| name.to_lowercase().contains(&text));
+    let why_none = named.map_or_else(
+        || "Nothing found.".to_owned(),
+        |name| format!("\"{name}\" is an attribute: {name}> finds all that have it, {name}>5 and {name}=5 some."),
+    );
+    Found::of(objects, why_none)
+}
+
+/// The objects that an expression means, wholes in place of their parts, each with its value of the first name; in the order that a relation asks for, the extreme ones
+/// first, numbers before texts, equal ones as they come.
+fn found_by(expression: &Expression, relation: Relation, model: &CityModel, attributes: &[String]) -> Found {
+    let bound = Bound::new(model, expression);
+    if let Some(name) = bound.unknown().first() {
+        let meant = did_you_mean(&name.text, attributes.iter().map(String::as_str));
+        let end = if meant.is_empty() { "." } else { "" };
+        let why_none = format!("No object has an attribute \"{}\"{meant}{end}", name.text);
+        return Found { why_none, ..Found::default() };
+    }
+    let meant = bound.objects();
+    let parent = |object: &u32| model.objects[*object as usize].parents.first().copied();
+    let is_part = |object: u32| std::iter::successors(parent(&object), parent).any(|whole| meant[whole as usize]);
+    let names = expression.names();
+    let value = |object: u32| {
+        let given = names.first().and_then(|name| bound.value(object, name));
+        given.map_or_else(String::new, |given| given.written().into_owned())
     };
-    let value_of = |object: u32| {
-        let attributes = model.attributes_of(object);
-        let own = attributes.iter().find(|own| model.strings.get(own.name).to_lowercase() == name)?;
-        (own.value != Value::Null).then(|| text_of(own.value, model))
-    };
-    let fits =
-        |value: &str| wanted.is_empty() || order(&value.to_lowercase(), wanted).is_some_and(|o| relation.holds(o));
-    let mut objects: Vec<(u32, String)> =
-        all.filter_map(|object| Some((object, value_of(object).filter(|value| fits(value))?))).collect();
-    // The extreme ones first, numbers before texts; equal ones as they come.
+    let all = (0..model.objects.len() as u32).filter(|&object| meant[object as usize] && !is_part(object));
+    let mut objects: Vec<(u32, String)> = all.map(|object| (object, value(object))).collect();
     let towards = |order: Ordering| match relation {
-        Relation::Equal => Ordering::Equal,
         Relation::Less | Relation::AtMost => order,
         Relation::More | Relation::AtLeast => order.reverse(),
+        _ => Ordering::Equal,
     };
+    let is_sorted = !matches!(relation, Relation::Equal | Relation::Other | Relation::Contains);
     objects.sort_by(|(_, a), (_, b)| match (a.parse::<f64>(), b.parse::<f64>()) {
         (Ok(a), Ok(b)) => towards(a.total_cmp(&b)),
-        (Ok(_), Err(_)) if relation != Relation::Equal => Ordering::Less,
-        (Err(_), Ok(_)) if relation != Relation::Equal => Ordering::Greater,
+        (Ok(_), Err(_)) if is_sorted => Ordering::Less,
+        (Err(_), Ok(_)) if is_sorted => Ordering::Greater,
         _ => towards(a.cmp(b)),
     });
-    let is_known = attributes.iter().any(|own| own.to_lowercase() == name);
-    let why_none = match is_known {
-        true => "Nothing found.".to_owned(),
-        false => {
-            let meant = did_you_mean(name, attributes.iter().map(String::as_str));
-            // As it was typed.
-            let name = parts(typed).map_or(name, |(name, ..)| name);
-            format!("No object has an attribute \"{name}\"{meant}{}", if meant.is_empty() { "." } else { "" })
-        }
-    };
-    Found::of(objects.into_iter().map(|(object, value)| (object, Some(value))).collect(), why_none)
+    Found::of(objects.into_iter().map(|(object, value)| (object, Some(value))).collect(), "Nothing found.".to_owned())
 }
 
 impl Found {
@@ -240,6 +227,10 @@ mod tests {
             ("built<1900-01-01", vec![3]),
             ("built>1900-01-01", vec![4]),
             ("function=church", vec![0]),
+            ("height > 5 and built < 1900", vec![3]),
+            ("height in 3..7 or function contains chur", vec![0, 3]),
+            ("not height and id != house-5", vec![2]),
+            ("function = 'church'", vec![0]),
         ] {
             assert_eq!(ids(text), expected, "{text}");
         }
@@ -264,6 +255,12 @@ mod tests {
             ("hieght>3", "No object has an attribute \"hieght\"; did you mean \"height\"?"),
             ("zzz=3", "No object has an attribute \"zzz\"."),
             ("height>99", "Nothing found."),
+            (
+                "height > 5 and",
+                "column 15: a name is missing here: that of an attribute, \"type\", \"id\" or \"geometry.height\".",
+            ),
+            ("height > 5 built", "column 12: \"and\" or \"or\" is missing before this."),
+            ("height > 5 and hight < 3", "No object has an attribute \"hight\"; did you mean \"height\"?"),
             ("nowhere", "Nothing found."),
             ("HEIG", "\"height\" is an attribute: height> finds all that have it, height>5 and height=5 some."),
             ("", ""),

@@ -11,6 +11,7 @@ use crate::{
         nearest::did_you_mean,
         thematic::{ThematicError, attribute_names, category_of, number_of},
     },
+    query::{self, Bound},
 };
 
 /// Values that a message names at most.
@@ -25,6 +26,8 @@ pub struct Choice {
     pub types: Vec<String>,
     /// Objects that have this attribute; one without it takes its parent's. `None`, no ids and no types: all objects.
     pub attribute: Option<String>,
+    /// Objects of which this expression is true ([`crate::query`]), and their parts.
+    pub expression: Option<String>,
     /// Only where the attribute is one of these.
     pub values: Option<Vec<String>>,
     /// Only where it is a number of at least this.
@@ -36,17 +39,18 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// Whether it names objects, or their types: no attribute chooses.
+    /// Whether it names objects, their types, or what is true of them: no attribute chooses.
     fn names(&self) -> bool {
-        !(self.ids.is_empty() && self.types.is_empty())
+        !(self.ids.is_empty() && self.types.is_empty() && self.expression.is_none())
     }
 
     /// The key by which it chooses.
     pub fn key(&self) -> &'static str {
-        match (self.ids.is_empty(), self.types.is_empty()) {
-            (false, _) => "ids",
-            (true, false) => "types",
-            (true, true) => "attribute",
+        match (self.ids.is_empty(), self.types.is_empty(), &self.expression) {
+            (false, ..) => "ids",
+            (true, false, _) => "types",
+            (true, true, Some(_)) => "where",
+            (true, true, None) => "attribute",
         }
     }
 
@@ -59,6 +63,7 @@ impl Choice {
         Self {
             ids: Vec::new(),
             types: Vec::new(),
+            expression: None,
             attribute: used.text("attribute").map(str::to_owned),
             values,
             min: used.number("min"),
@@ -117,7 +122,10 @@ pub fn members(model: &CityModel, choice: &Choice) -> Vec<bool> {
             let own = &model.objects[*object as usize];
             named.contains(&*own.id) || kinds.contains(&own.kind)
         };
-        let mut next: Vec<u32> = (0..count as u32).filter(is_named).collect();
+        let meant = choice.expression.as_deref().and_then(|text| query::parse(text).ok());
+        let meant = meant.map(|expression| Bound::new(model, &expression).objects()).unwrap_or_default();
+        let is_meant = |object: &u32| is_named(object) || meant.get(*object as usize) == Some(&true);
+        let mut next: Vec<u32> = (0..count as u32).filter(is_meant).collect();
         while let Some(object) = next.pop() {
             // Each once: parts may be named by several objects.
             if objects[object as usize] == choice.except {
@@ -151,6 +159,19 @@ pub fn absent(model: &CityModel, choice: &Choice) -> Vec<(String, String)> {
     }
     found.extend(absent_types(model, &choice.types).into_iter().map(|(i, message)| (format!("types.{i}"), message)));
     let names = attribute_names(model);
+    match choice.expression.as_deref().map(query::parse) {
+        Some(Ok(expression)) => {
+            let unknown = Bound::new(model, &expression).unknown().into_iter().map(|name| {
+                let hint = did_you_mean(&name.text, names.iter().copied());
+                let message =
+                    format!("column {}: no object of the city has the attribute \"{}\"{hint}", name.column, name.text);
+                ("where".to_owned(), message)
+            });
+            found.extend(unknown);
+        }
+        Some(Err(error)) => found.push(("where".into(), error.to_string())),
+        None => {}
+    }
     if let Some(name) = choice.attribute.as_deref().filter(|name| !names.contains(name)) {
         let hint = did_you_mean(name, names);
         found.push(("attribute".into(), format!("no object of the city has the attribute \"{name}\"{hint}")));
@@ -174,6 +195,9 @@ pub fn absent_types(model: &CityModel, types: &[String]) -> Vec<(usize, String)>
 
 /// Why a choice of known names means nobody, and what would mean somebody.
 fn nobody(model: &CityModel, choice: &Choice) -> (String, String) {
+    if choice.expression.is_some() && !choice.except {
+        return ("where".into(), "is true of no object of the city".into());
+    }
     let Some(name) = &choice.attribute else {
         return ("except".into(), "no object is left: all of the city are named".into());
     };
@@ -237,6 +261,35 @@ mod tests {
             parameters: parameters.iter().map(|(k, v)| ((*k).to_owned(), v.clone())).collect(),
         };
         chosen(&city(years), &Choice::of_effect(&used))
+    }
+
+    #[test]
+    fn an_expression_chooses_with_parts() {
+        let mut model = city(&[Some(1900), Some(1950), None, Some(2001), None]);
+        // The last is a part of the first.
+        model.objects[0].children = vec![4];
+        model.objects[4].parents = vec![0];
+        let choice = |text: &str, except| Choice { expression: Some(text.into()), except, ..Choice::default() };
+        for (text, except, expected) in [
+            ("year < 1951", false, [true, true, false, false, true]),
+            ("year < 1951", true, [false, false, true, true, false]),
+            ("year in 1950..1999 or id = o3", false, [false, true, false, true, false]),
+            ("id = o0", false, [true, false, false, false, true]),
+            ("not year", false, [false, false, true, false, false]),
+        ] {
+            assert_eq!(members(&model, &choice(text, except)), expected, "{text} {except}");
+            assert_eq!(absent(&model, &choice(text, except)), [], "{text}");
+        }
+        for (text, message) in [
+            (
+                "year > 1900 and yaer < 3",
+                "column 17: no object of the city has the attribute \"yaer\"; did you mean \"year\"?",
+            ),
+            ("year > 3000", "is true of no object of the city"),
+            ("year >", "column 7: a value is missing here: a number, a date or a \"text\""),
+        ] {
+            assert_eq!(absent(&model, &choice(text, false)), [("where".to_owned(), message.to_owned())], "{text}");
+        }
     }
 
     #[test]

@@ -23,7 +23,7 @@ use source::{Modules, modules};
 const FLOORS: &[&[&str]] = &[
     &["geom", "text", "time"],
     &["city", "field", "view", "overlay", "shader", "gpu"],
-    &["visibility"],
+    &["query", "visibility"],
     &["lens"],
     &["scene"],
     &["render"],

@@ -1,4 +1,4 @@
-//! City objects chosen by their ids, types or an attribute, in scene files.
+//! City objects chosen by their ids, types, an expression or an attribute, in scene files.
 
 use crate::{
     figure::scene_file::{
@@ -11,12 +11,13 @@ use crate::{
         row::{self, Row, field, keys_of},
     },
     lens::chosen::Choice,
+    query,
 };
 
 const IDS: Key = key(
     "ids",
     Kind::Texts,
-    "none: `types` or `attribute`",
+    "none: `types`, `where` or `attribute`",
     "",
     "Ids of city objects; their parts belong to them.",
     "[\"town-hall\"]",
@@ -24,15 +25,23 @@ const IDS: Key = key(
 const TYPES: Key = key(
     "types",
     Kind::Texts,
-    "none: `ids` or `attribute`",
+    "none: `ids`, `where` or `attribute`",
     "",
     "Types of city objects, as their files call them; their parts belong to them.",
     "[\"Bridge\"]",
 );
+const WHERE: Key = key(
+    "where",
+    Kind::Text,
+    "none: `ids`, `types` or `attribute`",
+    "",
+    "Objects of which this is true; their parts belong to them. See Expressions.",
+    "\"height > 25 and yearOfConstruction < 1900\"",
+);
 const ATTRIBUTE: Key = key(
     "attribute",
     Kind::Text,
-    "none: `ids` or `types`",
+    "none: `ids`, `types` or `where`",
     "",
     "Objects that have this attribute; one without it takes its parent's.",
     "\"yearOfConstruction\"",
@@ -59,7 +68,7 @@ const EXCEPT: Key = key("except", Kind::Boolean, "false", "", "All other objects
 /// `force` and `forbid` of a lens.
 pub const CHOICE: Table = Table {
     name: "choice",
-    doc: "City objects chosen by their ids, their types or an attribute: one of `ids`, `types` and `attribute`. Of an object that has parts one chosen part is enough.",
+    doc: "City objects chosen by their ids, their types, an expression or an attribute: one of `ids`, `types`, `where` and `attribute`. Of an object that has parts one chosen part is enough.",
     keys: keys_of!(CHOICE_ROWS),
 };
 
@@ -72,14 +81,15 @@ pub const CHOICE_ROWS: &[Row<Choice>] = &[
     field!(MIN, Same, |choice: Choice| choice.min),
     field!(MAX, Same, |choice: Choice| choice.max),
     field!(EXCEPT, Same, |choice: Choice| choice.except),
+    field!(WHERE, Same, |choice: Choice| choice.expression),
 ];
 
 /// A choice; what is wrong is noted.
 pub fn read(reader: &mut Reader, fields: &Fields) -> Choice {
-    let given: Vec<&str> = ["ids", "types", "attribute"].into_iter().filter(|key| fields.given(key)).collect();
+    let given: Vec<&str> = ["ids", "types", "where", "attribute"].into_iter().filter(|key| fields.given(key)).collect();
     match given[..] {
         [] => {
-            let message = "is missing: give ids = [\"ID\", ...], types = [\"TYPE\", ...] or attribute = \"NAME\"";
+            let message = "is missing: give ids = [\"ID\", ...], types = [\"TYPE\", ...], where = \"EXPRESSION\" or attribute = \"NAME\"";
             reader.checker.note(&fields.place, "ids", fields.place.line, message);
         }
         ["attribute"] => {}
@@ -95,6 +105,9 @@ pub fn read(reader: &mut Reader, fields: &Fields) -> Choice {
         if fields.node(key).and_then(Node::list).is_some_and(<[Node]>::is_empty) {
             reader.checker.note(&fields.place, key, fields.line(key), format!("must name at least one {what}"));
         }
+    }
+    if let Some(Err(error)) = fields.text("where").map(query::parse) {
+        reader.checker.note(&fields.place, "where", fields.line("where"), error.to_string());
     }
     if let (Some(min), Some(max)) = (fields.number("min"), fields.number("max"))
         && min > max

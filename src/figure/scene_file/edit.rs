@@ -20,7 +20,8 @@ use crate::{
 /// What as a value takes a key, or an element of a list, away.
 const UNSET: &str = "unset";
 /// Keys of a table of which giving one takes the others away.
-pub const FORMS: [&[&str]; 3] = [&["shape", "shapes"], &["text_px", "text_pt"], &["ids", "types", "attribute"]];
+pub const FORMS: [&[&str]; 3] =
+    [&["shape", "shapes"], &["text_px", "text_pt"], &["ids", "types", "where", "attribute"]];
 
 /// Another value for a key.
 #[derive(Clone, Debug, PartialEq)]

@@ -120,11 +120,14 @@ fn choices() -> impl Strategy<Value = Choice> {
     let attribute = (".{1,5}", prop::option::of(prop::collection::vec(".{1,4}", 1..3)))
         .prop_map(|(name, values)| (Vec::new(), Vec::new(), Some((name, values))));
     let all = (prop_oneof![ids, types, attribute], prop::option::of(-1e3..1e3f64), any::<bool>());
-    all.prop_map(|((ids, types, of), min, except)| {
+    let named = all.prop_map(|((ids, types, of), min, except)| {
         let (attribute, values) = of.map_or((None, None), |(name, values)| (Some(name), values));
         let min = min.filter(|_| attribute.is_some());
-        Choice { ids, types, attribute, values, min, max: min.map(|m| m + 1.0), except }
-    })
+        Choice { ids, types, expression: None, attribute, values, min, max: min.map(|m| m + 1.0), except }
+    });
+    let meant = ("`[a-z \"]{1,5}` (>|contains|in 1 [.][.]) [0-9]{1,3}( and not `a`)?", any::<bool>());
+    let meant = meant.prop_map(|(text, except)| Choice { expression: Some(text), except, ..Choice::default() });
+    prop_oneof![named, meant]
 }
 
 fn regions() -> impl Strategy<Value = Region> {

@@ -415,6 +415,7 @@ const OTHERS: &[Variant<Region>] = &[
             Row::<Region>::joint(CHOICE.keys[4], |region, options| chosen_key(region, "min", options)).always(),
             Row::<Region>::joint(CHOICE.keys[5], |region, options| chosen_key(region, "max", options)).always(),
             Row::<Region>::joint(CHOICE.keys[6], |region, options| chosen_key(region, "except", options)).always(),
+            Row::<Region>::joint(CHOICE.keys[7], |region, options| chosen_key(region, "where", options)).always(),
         ]
     ),
     variant!(
@@ -432,6 +433,7 @@ const OTHERS: &[Variant<Region>] = &[
             Row::<Region>::joint(CHOICE.keys[4], |region, options| chosen_key(region, "min", options)).always(),
             Row::<Region>::joint(CHOICE.keys[5], |region, options| chosen_key(region, "max", options)).always(),
             Row::<Region>::joint(CHOICE.keys[6], |region, options| chosen_key(region, "except", options)).always(),
+            Row::<Region>::joint(CHOICE.keys[7], |region, options| chosen_key(region, "where", options)).always(),
         ]
     ),
     variant!(

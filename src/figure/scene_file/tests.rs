@@ -232,7 +232,7 @@ fn every_mistake_in_a_lens_is_named() {
         ),
         (
             "shape = { kind = \"objects\" }",
-            "shape.ids: is missing: give ids = [\"ID\", ...], types = [\"TYPE\", ...] or attribute = \"NAME\"",
+            "shape.ids: is missing: give ids = [\"ID\", ...], types = [\"TYPE\", ...], where = \"EXPRESSION\" or attribute = \"NAME\"",
         ),
         (
             "shape = { kind = \"thematic\", ids = [\"a\"], attribute = \"b\" }",
