@@ -27,7 +27,11 @@ use crate::{
         report,
         terminal::Paint,
     },
-    lens::nearest::did_you_mean,
+    lens::{
+        chosen::{Choice, members, unknown_names},
+        nearest::did_you_mean,
+    },
+    query,
     scene::CitySpec,
     view::Field,
     visibility,
@@ -42,6 +46,8 @@ const EXAMPLES: &str = "\
 Examples:
   veduta info city.city.json                    a summary to read
   veduta info --list tiles/*.city.jsonl         several files as one city, every object by name
+  veduta info --where 'height > 25 and not function = church' city.city.json
+                                                the objects of which that is true
   veduta info --landmarks 10 city.city.json     what stands out in it
   veduta info --landmarks 5 --scene sights.toml city.city.json
                                                 the same as a scene: each in an overlay, tied to its place
@@ -89,6 +95,9 @@ pub struct Arguments {
     /// Name every object, with type, parents, levels of detail, and where it is; with --compare each that is not the same, and why
     #[arg(long)]
     pub list: bool,
+    /// Name the objects of which this is true, and their parts: "height > 25 and yearOfConstruction < 1900" (docs/scene.md, Expressions)
+    #[arg(long = "where", value_name = "EXPRESSION", conflicts_with = "compare")]
+    pub expression: Option<String>,
     /// List the views from which this object (with its parts) is seen best, best first
     #[arg(long, value_name = "ID")]
     pub best_views: Option<String>,
@@ -176,7 +185,12 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         let text = sights::scene(&spec.files, landmarks.iter().flatten(), file);
         output::write(file, |out| out.write_all(text.as_bytes()))?;
     }
-    let mut facts = facts::facts(&city, arguments.list);
+    let meant = arguments.expression.as_deref().map(|text| meant(&city, text)).transpose()?;
+    let mut facts = facts::facts(&city, arguments.list || meant.is_some());
+    if let (Some(list), Some(meant)) = (&mut facts.objects.list, meant) {
+        let mut each = meant.into_iter();
+        list.retain(|_| each.next().unwrap_or(false));
+    }
     facts.time = TimeFacts::new(&city, &spec.dating).map_err(|message| {
         Failure::failed(message.replacen(
             "city.",
@@ -189,6 +203,15 @@ pub fn run(arguments: &Arguments, global: &GlobalArguments) -> Outcome {
         return output::print(&(serde_json::to_string_pretty(&answer).map_err(Failure::failed)? + "\n"));
     }
     output::print(&report::text(&answer, &city.sources, Paint::for_stdout()))
+}
+
+/// One per object of a city, whether an expression means it.
+fn meant(city: &CityModel, text: &str) -> Outcome<Vec<bool>> {
+    let expression = query::parse(text).map_err(|error| Failure::usage(format!("--where: {error}")))?;
+    if let Some(message) = unknown_names(city, &expression).into_iter().next() {
+        return Err(Failure::failed(format!("--where: {message}")));
+    }
+    Ok(members(city, &Choice { expression: Some(text.to_owned()), ..Choice::default() }))
 }
 
 fn best_views(city: &CityModel, id: &str) -> Outcome<Vec<ViewFacts>> {

@@ -11,7 +11,7 @@ use crate::{
         nearest::did_you_mean,
         thematic::{ThematicError, attribute_names, category_of, number_of},
     },
-    query::{self, Bound},
+    query::{self, Bound, Expression},
 };
 
 /// Values that a message names at most.
@@ -161,13 +161,7 @@ pub fn absent(model: &CityModel, choice: &Choice) -> Vec<(String, String)> {
     let names = attribute_names(model);
     match choice.expression.as_deref().map(query::parse) {
         Some(Ok(expression)) => {
-            let unknown = Bound::new(model, &expression).unknown().into_iter().map(|name| {
-                let hint = did_you_mean(&name.text, names.iter().copied());
-                let message =
-                    format!("column {}: no object of the city has the attribute \"{}\"{hint}", name.column, name.text);
-                ("where".to_owned(), message)
-            });
-            found.extend(unknown);
+            found.extend(unknown_names(model, &expression).into_iter().map(|message| ("where".to_owned(), message)));
         }
         Some(Err(error)) => found.push(("where".into(), error.to_string())),
         None => {}
@@ -180,6 +174,16 @@ pub fn absent(model: &CityModel, choice: &Choice) -> Vec<(String, String)> {
         found.push(nobody(model, choice));
     }
     found
+}
+
+/// Messages about names of an expression that no object of the city has, with their columns.
+pub fn unknown_names(model: &CityModel, expression: &Expression) -> Vec<String> {
+    let bound = Bound::new(model, expression);
+    let told = bound.unknown().into_iter().map(|name| {
+        let hint = did_you_mean(&name.text, attribute_names(model));
+        format!("column {}: no object of the city has the attribute \"{}\"{hint}", name.column, name.text)
+    });
+    told.collect()
 }
 
 /// Types that no object of the city has: their places, and messages.

@@ -183,6 +183,38 @@ fn info_as_json_is_the_object_of_the_contract() {
 }
 
 #[test]
+fn info_names_the_objects_of_which_an_expression_is_true() {
+    let folder = Folder::new("where");
+    let file = folder.file("a.city.json", CITY);
+    for (text, expected) in [
+        ("year < 1950", vec!["a", "a1"]),
+        ("not year < 1950 and type = building", vec!["b"]),
+        ("type = BuildingPart or year in 1999..", vec!["a1", "b"]),
+        ("geometry.height = 3", vec!["a", "a1"]),
+        ("year > 3000", vec![]),
+    ] {
+        let output = run(&["info", "--json", "--where", text, &file]);
+        assert_eq!(code(&output), 0, "{text}: {}", err(&output));
+        let facts: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let list = facts["objects"]["list"].as_array().unwrap();
+        let ids: Vec<&str> = list.iter().map(|object| object["id"].as_str().unwrap()).collect();
+        assert_eq!(ids, expected, "{text}");
+    }
+    for (text, wanted, message) in [
+        (
+            "yaer < 1950",
+            1,
+            "--where: column 1: no object of the city has the attribute \"yaer\"; did you mean \"year\"?",
+        ),
+        ("year < 1950 and", 2, "--where: column 16: a name is missing here"),
+    ] {
+        let output = run(&["info", "--where", text, &file]);
+        assert_eq!(code(&output), wanted, "{text}");
+        assert!(err(&output).contains(message), "{text}: {}", err(&output));
+    }
+}
+
+#[test]
 fn info_as_text_fits_and_names_what_is_there() {
     let folder = Folder::new("text");
     let file = folder.file("a.city.json", CITY);
