@@ -196,9 +196,9 @@ impl RayMeshes {
         Ok(grown)
     }
 
-    /// The cities as the shader reads them, with what their meshes are told by.
-    pub fn uniform(&self, view: &View, placed: &[u8]) -> Vec<u8> {
-        let mut all: Vec<layout::RayCity> = self.traced(view, placed).iter().map(|city| city.own).collect();
+    /// The cities as the shader reads them.
+    pub fn uniform(cities: &[TracedCity]) -> Vec<u8> {
+        let mut all: Vec<layout::RayCity> = cities.iter().map(|city| city.own).collect();
         let count = all.len() as u32;
         all.resize(MOST_RAY_CITIES, bytemuck::Zeroable::zeroed());
         let mut bytes = bytemuck::bytes_of(&[count, 0, 0, 0]).to_vec();

@@ -263,11 +263,12 @@ impl Tracer<'_> {
         }
         match Lines::new(&city.own, &stretch.lines, lanes) {
             Some(lines) => first_in_city(city, &lines, stretch, lanes, found),
-            // They go too far apart to be followed together.
-            None => (0..LANES as u32)
+            // They go too far apart to be followed together. One alone that has no axis goes nowhere: it is no number.
+            None if lanes.count_ones() > 1 => (0..LANES as u32)
                 .map(|lane| 1 << lane & lanes)
                 .filter(|lane| *lane != 0)
                 .for_each(|lane| self.follow_in_city(city, stretch, lane, found)),
+            None => {}
         }
     }
 }
@@ -655,6 +656,12 @@ mod tests {
                     let t = f64::from(hit.t);
                     prop_assert!(t >= low * (1.0 - 1e-5) && t <= high * (1.0 + 1e-5), "lane {lane}: {t}, not {low} to {high}");
                 }
+            }
+            // What is no direction meets nothing, and leaves those beside it alone.
+            let lost = [DVec3::NAN, directions[1], DVec3::splat(f64::INFINITY), directions[3]];
+            let found = tracer.follow(&lost.map(|direction| path(direction, &[])), 1);
+            for lane in 0..LANES {
+                prop_assert_eq!(found.of_lane(lane)[0].triangle > 0, lane % 2 == 1, "lane {}", lane);
             }
             prop_assert_eq!(tracer.follow(&std::array::from_fn(|_| path(DVec3::Z, &[])), 1).of_lane(0)[0], TracedHit::default(), "above");
         }

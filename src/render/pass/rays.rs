@@ -45,7 +45,7 @@ static TRACED: GroupLayout = GroupLayout {
 };
 
 /// Hits that the processor tells at a time, at most: five words each are what any adapter binds.
-const MOST_TRACED: u64 = 6_000_000;
+const MOST_TRACED: usize = 6_000_000;
 
 /// What is drawn of lenses that bend rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -269,19 +269,23 @@ fn group_of(stage: &Preparing, meshes: &RayMeshes, cities: &Synced) -> wgpu::Bin
     group(stage.gpu, RAYS.label, &stage.pipelines.layout(&RAYS), &entries)
 }
 
-/// How many hits of a ray the processor tells: where something is hidden those behind the first ones may be seen.
-fn hits_of(plan: &FramePlan) -> usize {
-    if plan.cuts.picture.is_some() { MOST_HITS } else { 1 }
+fn pixels(part: PictureTile) -> usize {
+    part.size[0] as usize * part.size[1] as usize
+}
+
+/// How many hits of a ray the processor tells, where there is room: where something is hidden those behind the first ones may be seen.
+fn hits_of(plan: &FramePlan, part: PictureTile) -> usize {
+    let most = if plan.cuts.picture.is_some() { MOST_HITS } else { 1 };
+    (MOST_TRACED / pixels(part).max(1)).clamp(1, most)
 }
 
 /// Whether the processor traces what lies in a part.
 fn is_traced(plan: &FramePlan, part: PictureTile) -> bool {
     let bends = plan.input.operations.bends;
-    let pixels = u64::from(part.size[0]) * u64::from(part.size[1]);
     let is_plain = bends.choosing == 0 && bends.own == [0; MOST_RAY_LENSES];
     // Layers that lie in what is opaque are as far, to the bit, where both are found in one way.
     let has_layers = plan.plans.layering.is_some();
-    plan.settings.traces_rays && is_plain && !has_layers && pixels * hits_of(plan) as u64 <= MOST_TRACED
+    plan.settings.traces_rays && is_plain && !has_layers && pixels(part) <= MOST_TRACED
 }
 
 /// Whether some of what is drawn has images, storeys and windows left out.
@@ -408,7 +412,8 @@ impl Pass for Rays {
         let (gpu, plan) = (stage.gpu, stage.plan);
         let mut is_stale = kept.meshes.fit(gpu, plan, &stage.cities, parts.follows())?;
         let placed = stage.cities.uniforms(plan.input.view.camera.eye, plan.input.operations);
-        is_stale |= kept.cities.sync(gpu, &kept.meshes.uniform(&plan.input.view, &placed))?;
+        let cities = kept.meshes.traced(&plan.input.view, &placed);
+        is_stale |= kept.cities.sync(gpu, &RayMeshes::uniform(&cities))?;
         if !parts.moved.is_empty() {
             let view = &plan.input.view;
             let pieces = pieces(plan.input.rays, view, &kept.meshes.cities(view, &placed));
@@ -419,11 +424,10 @@ impl Pass for Rays {
             kept.group = group_of(stage, &kept.meshes, &kept.cities);
         }
         if let Some(part) = parts.traced {
-            let cities = kept.meshes.traced(&plan.input.view, &placed);
             let view = plan.view_uniform();
             let view = TracedView { across_from_pixel: view.across_from_pixel, near: view.near };
             let started = Instant::now();
-            let most = hits_of(plan);
+            let most = hits_of(plan, part);
             let (hits, rays) = trace(plan.input.rays, &view, &cities, part, most);
             self.figures = TracedFigures { rays, ms: started.elapsed().as_secs_f64() * 1e3 };
             let mut words = vec![part.origin[0], part.origin[1], part.size[0], most as u32];
