@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::{
     city::{CityModel, StringId, Value},
@@ -33,16 +33,12 @@ pub struct Bound<'a> {
 impl<'a> Bound<'a> {
     /// The expression over a city.
     pub fn new(model: &'a CityModel, expression: &'a Expression) -> Self {
-        let mut attributes: Vec<StringId> = model.attributes.iter().map(|attribute| attribute.name).collect();
-        attributes.sort_unstable();
-        attributes.dedup();
+        let has = |id: &StringId| model.attributes.par_iter().any(|attribute| attribute.name == *id);
         let source = |name: &'a Name| {
-            let is_exact = |id: &&StringId| model.strings.get(**id) == name.text;
             let lower = name.text.to_lowercase();
-            let is_like = |id: &&StringId| model.strings.get(**id).to_lowercase() == lower;
-            let found = match attributes.iter().find(is_exact) {
-                Some(id) => vec![*id],
-                None => attributes.iter().filter(is_like).copied().collect(),
+            let found = match model.strings.find(&name.text).filter(has) {
+                Some(id) => vec![id],
+                None => named_like(model, &lower),
             };
             let own = match lower.as_str() {
                 _ if !found.is_empty() => Source::Attributes(found),
@@ -86,6 +82,15 @@ impl<'a> Bound<'a> {
     pub fn objects(&self) -> Vec<bool> {
         (0..self.model.objects.len() as u32).into_par_iter().map(|object| self.means(object)).collect()
     }
+}
+
+/// The attributes that are called so, in whatever letters; lower case.
+fn named_like(model: &CityModel, lower: &str) -> Vec<StringId> {
+    let names: FxHashSet<StringId> = model.attributes.iter().map(|attribute| attribute.name).collect();
+    let mut found: Vec<StringId> =
+        names.into_iter().filter(|id| model.strings.get(*id).to_lowercase() == lower).collect();
+    found.sort_unstable();
+    found
 }
 
 fn given(model: &CityModel, value: Value) -> Option<Given<'_>> {
