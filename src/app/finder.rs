@@ -170,7 +170,7 @@ pub fn text_of(value: Value, model: &CityModel) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::city::{Attribute, CityObject, ObjectClass};
+    use crate::city::test_city::add_building;
 
     /// Six objects: heights 3, 12.5, null, 7, 12.5 and "tall"; two of them with a day when they were built.
     fn city() -> (CityModel, Vec<String>) {
@@ -186,19 +186,8 @@ mod tests {
             vec![(height, Value::Number(12.5)), (built, text("1954-10-20"))],
             vec![(height, text("tall"))],
         ];
-        let kind = model.strings.intern("Building");
         for (i, attributes) in objects.into_iter().enumerate() {
-            let start = model.attributes.len() as u32;
-            model.attributes.extend(attributes.into_iter().map(|(name, value)| Attribute { name, value }));
-            model.objects.push(CityObject {
-                id: format!("house-{i}").into(),
-                kind,
-                class: ObjectClass::Building,
-                parents: vec![],
-                children: vec![],
-                attributes: start..model.attributes.len() as u32,
-                geometries: 0..0,
-            });
+            add_building(&mut model, format!("house-{i}"), attributes);
         }
         (model, names.map(str::to_owned).to_vec())
     }

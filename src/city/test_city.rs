@@ -1,4 +1,4 @@
-//! Small cities for the tests of this room, made by hand through the builder.
+//! Small cities for tests, made by hand, most through the builder.
 
 use std::sync::Arc;
 
@@ -11,7 +11,7 @@ use crate::city::{
         points::Pool,
         raw::{Polygons, RawGeometry, RawObject},
     },
-    model::{CityModel, Lod, NONE, ObjectClass, Source, StringId, Surface},
+    model::{Attribute, CityModel, CityObject, Lod, NONE, ObjectClass, Source, StringId, Surface, Value},
 };
 
 /// Millimetres somewhere in the Netherlands.
@@ -82,4 +82,19 @@ pub(crate) fn terrain(side: i64) -> CityModel {
         .collect();
     add(&mut builder, "terrain", ObjectClass::Terrain, None, points, &faces);
     builder.finish()
+}
+/// Adds a building without geometry that has these attributes.
+pub(crate) fn add_building(model: &mut CityModel, id: String, attributes: impl IntoIterator<Item = (StringId, Value)>) {
+    let start = model.attributes.len() as u32;
+    model.attributes.extend(attributes.into_iter().map(|(name, value)| Attribute { name, value }));
+    let kind = model.strings.intern("Building");
+    model.objects.push(CityObject {
+        id: id.into(),
+        kind,
+        class: ObjectClass::Building,
+        parents: vec![],
+        children: vec![],
+        attributes: start..model.attributes.len() as u32,
+        geometries: 0..0,
+    });
 }

@@ -230,28 +230,14 @@ fn nobody(model: &CityModel, choice: &Choice) -> (String, String) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        city::{Attribute, CityObject, ObjectClass},
-        lens::class::Class,
-    };
+    use crate::{city::test_city::add_building, lens::class::Class};
 
     /// A city of objects without geometry whose attribute `year` is this.
     fn city(years: &[Option<i64>]) -> CityModel {
         let mut model = CityModel::default();
-        let (kind, name) = (model.strings.intern("Building"), model.strings.intern("year"));
+        let name = model.strings.intern("year");
         for (i, year) in years.iter().enumerate() {
-            let start = model.attributes.len() as u32;
-            model.attributes.extend(year.map(|y| Attribute { name, value: Value::Integer(y) }));
-            let attributes = start..model.attributes.len() as u32;
-            model.objects.push(CityObject {
-                id: format!("o{i}").into(),
-                kind,
-                class: ObjectClass::Building,
-                parents: vec![],
-                children: vec![],
-                attributes,
-                geometries: 0..0,
-            });
+            add_building(&mut model, format!("o{i}"), year.map(|y| (name, Value::Integer(y))));
         }
         model
     }

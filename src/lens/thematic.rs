@@ -586,9 +586,10 @@ mod tests {
     use super::*;
     use crate::{
         city::{
-            Attribute, CityObject, ObjectClass, decode_normal,
+            decode_normal,
             load::{LoadOptions, Quiet, load},
             measured::{OfObject, azimuth_deg, slope_deg},
+            test_city::add_building,
         },
         lens::{color::difference, ramp::ramp},
     };
@@ -596,22 +597,10 @@ mod tests {
     /// A city of objects without geometry, each with the attribute `a` (or without).
     fn city(values: &[Option<&str>], read: fn(&str, &mut Strings) -> Value) -> CityModel {
         let mut model = CityModel::default();
-        let (kind, name) = (model.strings.intern("Building"), model.strings.intern("a"));
+        let name = model.strings.intern("a");
         for (i, text) in values.iter().enumerate() {
-            let start = model.attributes.len() as u32;
-            if let Some(text) = text {
-                let value = read(text, &mut model.strings);
-                model.attributes.push(Attribute { name, value });
-            }
-            model.objects.push(CityObject {
-                id: format!("o{i}").into(),
-                kind,
-                class: ObjectClass::Building,
-                parents: vec![],
-                children: vec![],
-                attributes: start..model.attributes.len() as u32,
-                geometries: 0..0,
-            });
+            let value = text.map(|text| read(text, &mut model.strings));
+            add_building(&mut model, format!("o{i}"), value.map(|value| (name, value)));
         }
         model
     }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::{
-    city::{Attribute, CityModel, CityObject, ObjectClass, Value},
+    city::{CityModel, Value, test_city::add_building},
     time::Interval,
 };
 
@@ -95,28 +95,16 @@ fn bare(expression: Expression) -> Expression {
 fn city(rows: &[Vec<Cell>]) -> CityModel {
     let mut model = CityModel::default();
     let names = NAMES.map(|name| model.strings.intern(name));
-    let kind = model.strings.intern("Building");
     for (i, row) in rows.iter().enumerate() {
-        let start = model.attributes.len() as u32;
-        for (name, cell) in names.into_iter().zip(row) {
-            let value = match cell {
-                Cell::Null => Value::Null,
-                Cell::Truth(truth) => Value::Boolean(*truth),
-                Cell::Number(n) if n.fract() == 0.0 => Value::Integer(*n as i64),
-                Cell::Number(n) => Value::Number(*n),
-                Cell::Text(text) => Value::String(model.strings.intern(text)),
-            };
-            model.attributes.push(Attribute { name, value });
-        }
-        model.objects.push(CityObject {
-            id: format!("house-{i}").into(),
-            kind,
-            class: ObjectClass::Building,
-            parents: vec![],
-            children: vec![],
-            attributes: start..model.attributes.len() as u32,
-            geometries: 0..0,
-        });
+        let value = |cell: &Cell, model: &mut CityModel| match cell {
+            Cell::Null => Value::Null,
+            Cell::Truth(truth) => Value::Boolean(*truth),
+            Cell::Number(n) if n.fract() == 0.0 => Value::Integer(*n as i64),
+            Cell::Number(n) => Value::Number(*n),
+            Cell::Text(text) => Value::String(model.strings.intern(text)),
+        };
+        let values: Vec<Value> = row.iter().map(|cell| value(cell, &mut model)).collect();
+        add_building(&mut model, format!("house-{i}"), names.into_iter().zip(values));
     }
     model
 }
@@ -279,17 +267,9 @@ fn expressions_mean_what_people_would_say() {
     ];
     let mut model = city(&rows);
     // A part of the first house, without attributes.
-    let kind = model.strings.intern("BuildingPart");
-    let part = CityObject {
-        id: "part".into(),
-        kind,
-        class: ObjectClass::Building,
-        parents: vec![0],
-        children: vec![],
-        attributes: 0..0,
-        geometries: 0..0,
-    };
-    model.objects.push(part);
+    add_building(&mut model, "part".into(), []);
+    let part = model.strings.intern("BuildingPart");
+    (model.objects[4].kind, model.objects[4].parents) = (part, vec![0]);
     for (text, expected) in [
         ("height > 25 and built < 1900", vec![0, 4]),
         ("HEIGHT >= 7 and HEIGHT<=12.5", vec![1, 3]),
